@@ -4,9 +4,11 @@
 
 #include "base/file.hpp"
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "canopen/node_id.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
+#include "command/family_at.hpp"
 #include "command/interface_option.hpp"
 #include "command/setting_options.hpp"
 #include "drive/bitrate.hpp"
@@ -33,7 +35,7 @@ constexpr Parameter kAddressParameters[] = {
     {.name = "new", .help = "the new node-ID, 1 to 127", .kind = Kind::number},
     {.name = "--bitrate", .help = "the new bitrate: 125k, 250k, 500k, 1M", .kind = Kind::text},
     {.name = "--plan",
-     .help = "renumber several: a CSV file with node,new (serial,bitrate)",
+     .help = "renumber several: a CSV file with node,new (family,serial,bitrate)",
      .kind = Kind::file},
     {.name = "--wait",
      .help = "how long to wait for a drive that is to be switched off and on",
@@ -98,47 +100,41 @@ const cabinet::Axis* axis_at(const Context& context, const AddressChange& change
   return nullptr;
 }
 
-std::string question_end(const Context& context, std::span<const AddressChange> changes,
-                         const settings::BitrateSwitch& follower) {
-  if (follower.follows()) {
-    auto out = "; " + settings::switch_text(follower, changes.front());
-    if (const auto who = who_receives(follower.link->name()); !who.empty()) out += "; " + who;
-    return out + ".";
-  }
-  const bool restarts = std::ranges::any_of(changes, &AddressChange::restarts);
-  return restarts ? fmt::format("? It is restarted (NMT {}).",
-                                drive::name(context.profile->rules.nmt.address_after))
-                  : std::string("? It holds when the drive is switched off and on.");
+std::string change_text(const AddressChange& change) {
+  const auto serial = change.identity.serial.value_or(0);
+  const auto who = serial != 0 ? fmt::format("node {} (serial number {})", change.node, serial)
+                               : fmt::format("node {}", change.node);
+  if (!change.bitrate) return fmt::format("{} to node-ID {}", who, change.to);
+  const auto rate = drive::bitrate_text(*change.bitrate);
+  if (!change.moves()) return fmt::format("{} to the bitrate {}", who, rate);
+  return fmt::format("{} to node-ID {} and the bitrate {}", who, change.to, rate);
 }
 
 std::string question_address(const Context& context, std::span<const AddressChange> changes,
                              const settings::BitrateSwitch& follower) {
   std::string out;
-  for (const auto& change : changes) {
-    if (change.idle()) continue;
-    out += fmt::format("{}node {}", out.empty() ? "Re-address " : ", ", change.node);
-    if (change.identity.serial.value_or(0) != 0)
-      out += fmt::format(" (serial number {})", *change.identity.serial);
-    if (change.moves()) out += fmt::format(" to node-ID {}", change.to);
-    if (change.bitrate) out += fmt::format(" to {}", drive::bitrate_text(*change.bitrate));
-  }
+  for (const auto& change : changes)
+    if (!change.idle()) append(out, change_text(change));
   for (const auto& change : changes)
     if (const auto* other = axis_at(context, change); other != nullptr)
       out += fmt::format("; in the cabinet file {} is the place of axis {}", change.to, other->name);
-  if (out.empty()) out = "Every drive has it for its next start";
-  return out + question_end(context, changes, follower);
+  if (follower.follows()) {
+    out = out.empty() ? "Every drive has it for its next start" : fmt::format("Re-address {}", out);
+    out += "; " + settings::switch_text(follower, changes.front());
+    if (const auto who = who_receives(follower.link->name()); !who.empty()) out += "; " + who;
+    return out + ".";
+  }
+  if (std::ranges::none_of(changes, &AddressChange::restarts))
+    return fmt::format("Re-address {}? It holds when the drive is switched off and on.", out);
+  return context.profile->rules.nmt.address_after == drive::NmtRules::Restart::reset_node
+             ? fmt::format("Re-address {}? It is restarted (NMT reset node).", out)
+             : fmt::format("Re-address {}? It is restarted (NMT reset communication).", out);
 }
 
 /// What a file of the user's says of the drive that has moved.
 void tell_axes(Context& context, const AddressChange& change, const AddressOutcome& outcome) {
   if (outcome.end != AddressEnd::moved && outcome.end != AddressEnd::awaits_restart) return;
-  if (!change.moves()) return;
-  for (const auto* axis : context.axes) {
-    if (axis->node != change.node) continue;
-    context.notices.push_back(
-        fmt::format("the cabinet file still has axis {} at node-ID {}: write the new one, {}, into it",
-                    axis->name, axis->node, change.to));
-  }
+  if (change.moves()) tell_moved_axis(context, change.node, change.to, change.identity.serial);
 }
 
 /// Nobody waited for it.
@@ -201,15 +197,16 @@ Result<Value> run_plan(Context& context, const Arguments& arguments,
   const std::filesystem::path file(arguments.text("--plan"));
   const auto text = read_file(file, kMostBytesOfPlan);
   if (!text) return fail(text.error());
-  const auto rows = settings::parse_address_plan(*text, file.string());
-  if (!rows) return fail(rows.error());
-  if (!arguments.has("--resume")) {
-    std::vector<std::uint8_t> nodes;
-    for (const auto& row : *rows) nodes.push_back(row.node);
-    if (const auto held = context.hold_family(nodes, context.profile, true); !held) return fail(held.error());
-  }
-  return settings::run_address_plan(context, *text, file,
-                                    {.each = options, .resume = arguments.has("--resume")});
+  settings::AddressPlanOptions all{.each = options, .resume = arguments.has("--resume")};
+  all.bus_bitrate = session::bitrate_of(context.session->url());
+  all.family_of = [&](const settings::AddressRow& row) { return family_at(context, row.family, row.node); };
+  all.hold = [&](std::uint8_t node, const drive::Profile& family) {
+    return context.hold_family(std::vector{node}, &family, true);
+  };
+  all.moved = [&](const settings::AddressRow& row, std::optional<std::uint32_t> serial) {
+    tell_moved_axis(context, row.node, row.to, serial);
+  };
+  return settings::run_address_plan(context, *text, file, all);
 }
 
 /// `all` are those that answer.
@@ -226,18 +223,19 @@ Result<Value> run_address(Context& context, const Arguments& arguments) {
   if (!options) return fail(options.error());
   if (const auto words = check_words(context, arguments); !words) return fail(words.error());
   if (arguments.has("--plan")) return run_plan(context, arguments, *options);
-  const auto wish = address_wish(arguments);
+  auto wish = address_wish(arguments);
   if (!wish) return fail(wish.error());
+  if (wish->node && !wish->bitrate) wish->bus_bitrate = session::bitrate_of(context.session->url());
   if (const auto named = name_all(context); !named) return fail(named.error());
   std::vector<AddressChange> changes;
-  std::vector<std::uint8_t> targets;
   for (const auto node : context.nodes) {
     auto change = settings::plan_address(context, node, *wish);
     if (!change) return fail(change.error());
-    if (change->moves()) targets.push_back(change->to);
+    if (change->moves()) context.free_nodes.push_back(change->to);
     changes.push_back(std::move(*change));
   }
-  if (const auto free = settings::refuse_taken(*context.session, targets); !free) return fail(free.error());
+  if (const auto free = settings::refuse_taken(*context.session, context.free_nodes); !free)
+    return fail(free.error());
   auto follower = follower_of(context, changes, *wish, *options);
   if (!follower) return fail(follower.error());
   if (context.dry_run) {
@@ -245,10 +243,12 @@ Result<Value> run_address(Context& context, const Arguments& arguments) {
       context.notices.push_back("then " + settings::switch_commands(*follower, changes.front()));
     return settings::planned_address(context, changes, options->unlock);
   }
-  const bool idle = std::ranges::all_of(changes, &AddressChange::idle);
-  if (!idle || follower->follows())
-    if (const auto agreed = context.confirm(question_address(context, changes, *follower)); !agreed)
-      return fail(agreed.error());
+  const bool idle = std::ranges::all_of(changes, &AddressChange::idle) && !follower->follows();
+  auto agreed = idle ? Result<void>() : context.confirm(question_address(context, changes, *follower));
+  // One may have been enabled meanwhile.
+  for (auto change = changes.begin(); agreed && change != changes.end(); ++change)
+    agreed = settings::refuse_energised(*context.session, change->node, "its address");
+  if (!agreed) return fail(agreed.error());
   return change_addresses(context, changes, *options, *follower);
 }
 
@@ -283,14 +283,15 @@ const Command kAddress{
         "interface changes when all are off. It is left alone, and what to do by hand is listed, where it has no "
         "bitrate that can be set (an slcan adapter is named with its new one), where the right CAP_NET_ADMIN is "
         "missing, or where somebody on the bus would be left behind. --dry-run shows the commands.\n\n"
-        "--plan FILE.csv renumbers several (columns node,new; serial and "
-        "bitrate where wanted): all are looked at first, and each moves when its new node-ID is free; "
+        "--plan FILE.csv renumbers several (columns node,new; family, serial and "
+        "bitrate where wanted; without a family it is that of -d, else that of the axis in the cabinet file): all are looked at first, and each moves when its new node-ID is free; "
         "drives that exchange theirs go through a free one. It ends with the first that fails; "
         "FILE.csv.journal keeps how far it came, and --resume continues.",
     .parameters = kAddressParameters,
     .examples = kAddressExamples,
     .needs = Needs::dictionary | Needs::can,
     .effect = Effect::resets,
+    .families_in = "--plan",
     .run = run_address,
     .check = check_address,
     .elsewhere = "a drive on EtherCAT is addressed by its place on the ring; it has no node-ID to change",

@@ -3,6 +3,7 @@
 #include <system_error>
 
 #include "base/file.hpp"
+#include "base/text.hpp"
 #include "command/command.hpp"
 #include "settings/backup_file.hpp"
 #include "settings/comparison.hpp"
@@ -59,6 +60,24 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   return {};
 }
 
+/// What is no backup is not replaced without a question.
+Result<void> may_replace(const Context& context, const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored) || settings::is_backup(file, context.front_end))
+    return {};
+  return context.confirm(fmt::format("Replace {}, which is no backup?", file.string()));
+}
+
+/// In which of the formats a file is that does not end as any of them.
+void tell_format(Context& context, const std::filesystem::path& file, const Arguments& arguments,
+                 settings::BackupFormat format) {
+  const auto ending = lower(file.extension().string());
+  if (arguments.has("--format") || settings::extension_of(format) == ending) return;
+  context.notices.push_back(fmt::format(
+      "{} is written as {}: it ends in none of .json, .dcf, .csv and .servoctl, and there is no --format",
+      file.string(), settings::kBackupFormats[static_cast<std::size_t>(format)]));
+}
+
 struct Saved {
   std::size_t values = 0;
   std::size_t left_out = 0;
@@ -85,12 +104,19 @@ Result<Value> run_backup(Context& context, const Arguments& arguments) {
   const auto format = settings::format_of(path, arguments.text("--format"));
   if (many)
     if (const auto made = make_folder(path); !made) return fail(made.error());
+  if (!many) tell_format(context, path, arguments, format);
+  std::vector<std::filesystem::path> files;
+  for (const auto node : context.nodes)
+    files.push_back(many ? path / fmt::format("node-{}{}", node, settings::extension_of(format)) : path);
+  for (const auto& file : files)
+    if (const auto agreed = may_replace(context, file); !agreed) return fail(agreed.error());
   const auto snapshots = session::take_snapshots(*context.session, *context.profile, context.nodes, *wanted);
   report::Table table;
-  table.columns = {{"node"}, {"file"}, {"values"}, {"left_out", "left out"}, {"error", "", Show::json}};
+  table.columns = {
+      {"node"}, {"file"}, {"values", "values saved"}, {"left_out", "left out"}, {"error", "", Show::json}};
   for (std::size_t i = 0; i < snapshots.size(); ++i) {
     const auto node = context.nodes[i];
-    const auto file = many ? path / fmt::format("node-{}{}", node, settings::extension_of(format)) : path;
+    const auto& file = files[i];
     const auto saved = snapshots[i] ? save(context, settings::make_backup(context, *snapshots[i]),
                                            only == kChanged, format, file)
                                     : Result<Saved>(fail(snapshots[i].error()));
@@ -117,16 +143,18 @@ const Command kBackup{
     .summary = "Save the settings of a drive to a file",
     .details =
         "Saves parameters and writable objects, one per line; several nodes are read at the same time into a "
-        "folder, as node-N.json. What is not a setting (commands, readings, targets) or is refused by the "
-        "drive is listed with the reason. A file is written whole or not at all. JSON has identity and "
-        "checksum: keep that one. A DCF (CiA 306) is for other tools, a table for a spreadsheet, a batch for "
-        "`run`. `restore`, `diff` and `verify` read all of them.",
+        "folder, as node-N.json. A file that is there and no backup is replaced only after a question. What is "
+        "not a setting (commands, readings, targets) or is refused by the drive is listed with the reason. A "
+        "file is written whole or not at all. JSON has identity and checksum: keep that one. A DCF (CiA 306) is "
+        "for other tools, a table for a spreadsheet, a batch for `run`. `restore`, `diff` and `verify` read all "
+        "of them.",
     .parameters = kBackupParameters,
     .examples = kBackupExamples,
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::reads,
     .family = FamilyCheck::always,
     .run = run_backup,
+    .one_file = "file",
     .on_registers = true,
 };
 

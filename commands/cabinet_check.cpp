@@ -1,4 +1,5 @@
 #include "cabinet/cabinet_check.hpp"
+#include "cabinet/axis_sheet.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -17,17 +18,6 @@ constexpr Parameter kCabinetCheckParameters[] = {
     {.name = "file", .help = "the cabinet file (default: as --cabinet)", .kind = Kind::file},
 };
 
-std::string load_text(const cabinet::Axis& axis) {
-  return axis.load ? fmt::format("{:.6g} {}/rev", axis.load->per_rev, axis.load->unit) : std::string();
-}
-
-Value pdos_text(const cabinet::Axis& axis) {
-  const auto& pdos = axis.pdos;
-  if (!pdos.preset.empty()) return pdos.preset;
-  if (!pdos.file.empty()) return pdos.file.filename().string();
-  return pdos.recipes.empty() ? Value() : Value(fmt::format("{} PDO{}", pdos.recipes.size(), pdos.recipes.size() == 1 ? "" : "s"));
-}
-
 report::Table axes_checked(const cabinet::Cabinet& cabinet) {
   report::Table out;
   out.columns = {{"axis"},
@@ -44,8 +34,9 @@ report::Table axes_checked(const cabinet::Cabinet& cabinet) {
     const auto ms =
         axis.heartbeat ? Value(std::chrono::duration_cast<std::chrono::milliseconds>(*axis.heartbeat).count())
                        : Value();
-    out.rows.push_back({axis.name, axis.bus, axis.node, axis.family, report::text_or_null(load_text(axis)),
-                        pdos_text(axis), ms, axis.parameters.size(), std::move(groups)});
+    out.rows.push_back({axis.name, axis.bus, axis.node, axis.family,
+                        report::text_or_null(cabinet::load_text(axis)), cabinet::pdos_text(axis), ms,
+                        axis.parameters.size(), std::move(groups)});
   }
   return out;
 }

@@ -59,7 +59,7 @@ class Init {
     auto found = look();
     if (!found) return fail(found.error());
     const auto text = *present + cabinet::cabinet_text(bus_, std::string(context_->front_end->bus_url()),
-                                                       *found, present->empty());
+                                                       *found, present->empty(), context_->chinese);
     if (const auto good = cabinet::parse_cabinet(text, file_); !good && known(*found))
       return fail(good.error());
     if (const auto written = write(text); !written) return fail(written.error());

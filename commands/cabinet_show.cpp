@@ -11,6 +11,7 @@
 #include "command/cabinet_options.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
+#include "report/table_text.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::commands {
@@ -43,9 +44,8 @@ std::string axis_mode_text(const AxisState& look) {
   return look.mode_word.empty() ? fmt::format("{}", *look.mode) : look.mode_word;
 }
 
-std::string fault_text(const AxisState& look) {
-  constexpr std::size_t kWords = 26;
-  const auto cell = look.told_fault.cell(kWords);
+std::string fault_text(const AxisState& look, std::size_t columns = std::string::npos) {
+  const auto cell = look.told_fault.cell(columns);
   const auto* text = std::get_if<std::string>(&cell.data());
   return text == nullptr ? "-" : *text;
 }
@@ -128,17 +128,24 @@ Record axis_record(const AxisState& look, const Differences& differences) {
           {"error", look.error ? show::error_record(*look.error) : Value()}};
 }
 
-report::Table axes_table(const std::vector<AxisState>& looks, const Differences& differences, bool chinese) {
+report::Table axes_table(const std::vector<AxisState>& looks, const Differences& differences, bool chinese,
+                         std::size_t window) {
   report::Table out;
+  const auto shown = [](std::string text) { return text == "-" ? Value() : Value(std::move(text)); };
   out.columns = {{"axis"},  {"bus"},  {"node"},  {"family"},   {"network"},
                  {"state"}, {"mode"}, {"fault"}, {"position"}, {"different", "differ"}};
   for (const auto& look : looks) {
-    const auto shown = [](std::string text) { return text == "-" ? Value() : Value(std::move(text)); };
     out.rows.push_back({look.axis->name, look.axis->bus, look.axis->node, look.axis->family,
                         shown(network_text(look)), state_text(look, chinese), shown(axis_mode_text(look)),
-                        shown(fault_text(look)), shown(position_text(look)), or_null(differences.of(look))});
+                        Value(), shown(position_text(look)), or_null(differences.of(look))});
     out.documents.emplace_back(axis_record(look, differences));
   }
+  constexpr std::size_t kFault = 7;
+  constexpr std::size_t kLeast = 26;
+  constexpr std::size_t kNumber = 7;  // `0x2310 `
+  const auto left = report::room_for(out, kFault, window);
+  const auto room = window == 0 ? left : std::max(kLeast, left - std::min(left, kNumber));
+  for (std::size_t i = 0; i < looks.size(); ++i) out.rows[i][kFault] = shown(fault_text(looks[i], room));
   return out;
 }
 
@@ -259,9 +266,10 @@ Result<Value> run_cabinet_show(Context& context, const Arguments& arguments) {
       differences.read(now);
     }
   }
+  const auto window = context.audience == nullptr ? 0 : context.audience->width();
   for (const auto& look : now)
     if (look.error) context.errors.push_back(*look.error);
-  return Value(axes_table(now, differences, context.chinese));
+  return Value(axes_table(now, differences, context.chinese, window));
 }
 
 constexpr Example kCabinetShowExamples[] = {

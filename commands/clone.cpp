@@ -77,8 +77,9 @@ const Command kClone{
     .summary = "Copy the settings of one drive to others",
     .details =
         "Backup and restore in one, with the same care: each target is checked, the differences are shown "
-        "and confirmed, its old values go to before-clone-node-N.json in the current folder, and a failure "
-        "writes them back and stops. Node-ID and bitrate stay; COB-IDs follow the target's node-ID.",
+        "and confirmed, its old values go to before-clone-node-N.json in the current folder (where that has "
+        "another drive's, to before-clone-node-N-drive-2.json), and a failure writes them back and stops. "
+        "Node-ID and bitrate stay; COB-IDs follow the target's node-ID.",
     .parameters = kCloneParameters,
     .examples = kCloneExamples,
     .needs = Needs::bus | Needs::dictionary,

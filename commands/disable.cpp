@@ -20,8 +20,22 @@ using report::Value;
 
 report::Table state_table() {
   report::Table table;
-  table.columns = {{"node"}, {"state"}, {"energised", "", Show::json}, {"result"}, {"error", "", Show::json}};
+  table.columns = {{"node"},
+                   {"state"},
+                   {"had_power", "", Show::json},
+                   {"energised", "", Show::json},
+                   {"result", "", Show::json},
+                   {"result_text", "result", Show::text},
+                   {"error", "", Show::json}};
   return table;
+}
+
+/// Nothing was stopped, or disabled, where nothing had power.
+std::string_view result_text(const motion::PowerDownResult& done, std::string_view done_word) {
+  if (!done.outcome) return "failed";
+  if (done.had_power() == false) return "it had no power already";
+  const bool is_stop = done.quick_stop;
+  return is_stop && done.is_without_power() && !done.had_power() ? "it has no power" : done_word;
 }
 
 /// What is known of one node now goes into the table and beside it.
@@ -29,8 +43,11 @@ void tell_power_off(Context& context, std::uint8_t node, const motion::PowerDown
                     motion::PowerAim aim, std::string_view done_word, report::Table& table) {
   if (!done.outcome) context.errors.push_back(done.outcome.error());
   const bool energised = !done.statusword || drive::is_energised(done.state());
-  table.rows.push_back({node, done.statusword ? Value(drive::name(done.state())) : Value(), Value(energised),
+  const auto had_power = done.had_power();
+  table.rows.push_back({node, done.statusword ? Value(drive::name(done.state())) : Value(),
+                        had_power ? Value(*had_power) : Value(), Value(energised),
                         done.outcome ? Value(done_word) : Value("failed"),
+                        Value(result_text(done, done_word)),
                         done.outcome ? Value() : show::error_record(done.outcome.error())});
   for (const auto& note : done.notes) context.notices.push_back(fmt::format("node {}: {}", node, note));
   if (energised)

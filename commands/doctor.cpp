@@ -52,6 +52,7 @@ Result<Value> run_doctor(Context& context, const Arguments& arguments) {
   if (*length) options.listen = **length;
   options.active = arguments.has("--active");
   options.cancelled = [before = signals_noted()] { return signals_noted() != before; };
+  options.told = [&](double share, TimePoint begin, TimePoint now) { context.show_share(share, begin, now); };
   std::vector<Findings> all;
   const auto urls = urls_of(context, arguments);
   for (const auto& url : urls) {
@@ -61,9 +62,10 @@ Result<Value> run_doctor(Context& context, const Arguments& arguments) {
   }
   if (urls.empty()) all.push_back(traffic::examine_machine());
   if (const auto faults = traffic::faults_in(all); faults > 0)
-    context.errors.push_back(
-        make_error(Errc::negative, fmt::format("{} fault{} found", faults, faults == 1 ? " was" : "s were"),
-                   "begin with the first; each says what mends it"));
+    context.errors.push_back(make_error(
+        Errc::negative,
+        faults == 1 ? std::string("1 fault was found") : fmt::format("{} faults were found", faults),
+        "begin with the first; each says what mends it"));
   return findings_value(all);
 }
 

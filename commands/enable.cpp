@@ -1,4 +1,8 @@
 #include <fmt/format.h>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
 
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
@@ -6,6 +10,8 @@
 #include "motion/left_energised.hpp"
 #include "motion/motion_result.hpp"
 #include "motion/operation_mode.hpp"
+#include "motion/power.hpp"
+#include "session/option_scope.hpp"
 #include "show/planned_messages.hpp"
 #include "show/records.hpp"
 
@@ -35,73 +41,146 @@ Result<void> energise(Context& context, motion::Motion& motion, session::Rehears
   return guard.release();
 }
 
-Result<void> enable_one(Context& context, motion::Motion& motion, session::Rehearsal& rehearsal) {
+/// On CAN it is left to itself, with whatever watchdog it has.
+motion::PreflightItem watchdog_of(const Context& context, const motion::Motion& motion) {
+  using Weight = motion::PreflightItem::Weight;
+  if (context.session->network().carries(session::LifeSign::Kind::process_data))
+    return motion::watchdog_item(motion.watchdog());
+  return {
+      Weight::caution, "watchdog",
+      "none by servoctl, which does not supervise it; `watchdog` shows what the drive itself does when its master "
+      "is lost"};
+}
+
+/// Of one node of the line, before any is enabled.
+Result<void> look_at(Context& context, motion::Motion& motion) {
   if (const auto ready = motion.prepare(); !ready) return fail(ready.error());
   // Where it stays energised after servoctl has gone nothing can watch servoctl.
-  const auto watchdog = context.session->network().carries(session::LifeSign::Kind::process_data)
-                            ? motion.watchdog()
-                            : motion::WatchdogPlan{};
-  const auto items =
-      motion::preflight(*context.session, motion.units(), motion.node(), watchdog, context.chinese);
+  if (context.session->network().carries(session::LifeSign::Kind::process_data))
+    if (const auto found = motion.find_watchdog(); !found) return found;
+  auto items = motion::preflight(*context.session, motion.units(), motion.node(), context.chinese);
   if (!items) return fail(items.error());
-  context.tell(motion::preflight_text(*items));
-  if (const auto possible = motion::check_preflight(*items, motion.node()); !possible)
-    return fail(possible.error());
-  if (context.dry_run) return energise(context, motion, rehearsal);
+  items->push_back(watchdog_of(context, motion));
+  context.tell(motion::preflight_text(*items, context.chinese));
+  return motion::check_preflight(*items, motion.node());
+}
+
+Result<void> ask(Context& context, motion::Motion& motion) {
+  if (context.dry_run) return {};
   const auto mode = motion::read_mode(*context.session, motion.node());
   if (!mode) return fail(mode.error());
-  const auto question = fmt::format(
+  return context.confirm(fmt::format(
       "Energise node {} in mode {} and leave it energised? It will not be supervised, and the motor may move.",
-      motion.node(), motion::mode_text(*context.profile, *mode, context.chinese));
-  if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
-  return energise(context, motion, rehearsal);
+      motion.node(), motion::mode_text(*context.profile, *mode, context.chinese)));
 }
 
-std::string_view result_text(const Context& context) {
-  return context.session->network().must_go_on() ? "ENERGISED while servoctl runs"
-                                                 : "ENERGISED, and stays so";
-}
+/// The nodes of a line on their way: all are looked at and asked for before the first is enabled, and what
+/// keeps one from it keeps all.
+class Enabling {
+ public:
+  explicit Enabling(Context& context) : context_(&context) {}
 
-/// What would be sent to all nodes, up to the first that is refused.
-Result<Value> planned_enable(Context& context, const Arguments& arguments) {
-  session::Rehearsal rehearsal;
-  for (const auto node : context.nodes) {
-    auto options = motion_options(context, arguments);
-    if (!options) return fail(options.error());
-    motion::Motion motion(*context.session, *context.profile, node, std::move(*options));
-    if (const auto done = enable_one(context, motion, rehearsal); !done) {
-      context.errors.push_back(done.error());
-      break;
+  /// Errc::usage for options that say nothing.
+  Result<void> begin(const Arguments& arguments) {
+    for (const auto node : context_->nodes) {
+      auto options = motion_options(*context_, arguments);
+      if (!options) return fail(options.error());
+      motions_.push_back(std::make_unique<motion::Motion>(*context_->session, *context_->profile, node,
+                                                          std::move(*options)));
+    }
+    return {};
+  }
+
+  void run(session::Rehearsal& rehearsal) {
+    if (!each([this](motion::Motion& motion) { return look_at(*context_, motion); })) return;
+    if (!each([this](motion::Motion& motion) { return ask(*context_, motion); })) return;
+    if (!each([&](motion::Motion& motion) { return enable(motion, rehearsal); })) take_back();
+  }
+
+  /// With the states read now, also behind Ctrl-C: they say what has power.
+  report::Table table() const {
+    const session::Deaf deaf(*context_->session);
+    report::Table out;
+    out.columns = {{"node"}, {"state"}, {"energised", "", Show::json}, {"result"}, {"error", "", Show::json}};
+    for (const auto& motion : motions_) {
+      const auto node = motion->node();
+      const auto state = motion::Power(*context_->session, *context_->profile, node).state();
+      const bool is_it = failed_ == node;
+      out.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
+                          state ? Value(drive::is_energised(*state)) : Value(),
+                          is_it ? "failed" : result_of(node), is_it ? show::error_record(*error_) : Value()});
+    }
+    return out;
+  }
+
+ private:
+  template <class Step>
+  bool each(const Step& step) {
+    for (const auto& motion : motions_)
+      if (const auto done = step(*motion); !done) {
+        failed_ = motion->node();
+        error_ = done.error();
+        context_->errors.push_back(done.error());
+        return false;
+      }
+    return true;
+  }
+
+  Result<void> enable(motion::Motion& motion, session::Rehearsal& rehearsal) {
+    begun_.insert(motion.node());
+    if (const auto done = energise(*context_, motion, rehearsal); !done || context_->dry_run) return done;
+    const auto state = motion::Power(*context_->session, *context_->profile, motion.node()).state();
+    if (!state || *state == drive::DriveState::operation_enabled) return {};
+    return fail(drive_error(Errc::negative, motion.node(),
+                            fmt::format("was enabled but did not stay so: it is in {}", drive::name(*state)),
+                            "see `status` and `fault show`"));
+  }
+
+  /// A line that fails leaves no motor with the power that it gave.
+  void take_back() {
+    if (context_->dry_run) return;
+    std::set<std::uint8_t> nodes;
+    for (const auto node : begun_)
+      if (context_->session->energised().contains(node)) nodes.insert(node);
+    for (const auto& [node, done] : motion::de_energise(*context_->session, nodes)) {
+      if (done) {
+        context_->notices.push_back(
+            fmt::format("node {} had been enabled by this line; it has been stopped and disabled", node));
+        taken_back_.insert(node);
+        continue;
+      }
+      auto error = done.error();
+      error.message = motion::power_warning(node, error.message);
+      context_->errors.push_back(std::move(error));
     }
   }
-  return show::planned_messages(context, rehearsal.messages());
-}
+
+  std::string_view result_of(std::uint8_t node) const {
+    if (taken_back_.count(node) != 0) return "disabled again";
+    if (failed_ && begun_.count(node) != 0) return "failed";
+    if (failed_) return "not enabled";
+    return context_->session->network().must_go_on() ? "ENERGISED while servoctl runs"
+                                                     : "ENERGISED, and stays so";
+  }
+
+  Context* context_;
+  std::vector<std::unique_ptr<motion::Motion>> motions_;
+  std::set<std::uint8_t> begun_;
+  std::set<std::uint8_t> taken_back_;
+  std::optional<std::uint8_t> failed_;
+  std::optional<Error> error_;
+};
 
 Result<Value> run_enable(Context& context, const Arguments& arguments) {
-  if (context.dry_run) return planned_enable(context, arguments);
-  session::Rehearsal unused;
-  report::Table table;
-  table.columns = {{"node"}, {"state"}, {"energised", "", Show::json}, {"result"}, {"error", "", Show::json}};
-  for (const auto node : context.nodes) {
-    auto options = motion_options(context, arguments);
-    if (!options) return fail(options.error());
-    motion::Motion motion(*context.session, *context.profile, node, std::move(*options));
-    auto done = enable_one(context, motion, unused);
-    motion::Power power(*context.session, *context.profile, node);
-    const auto state = power.state();
-    if (done && state && *state != drive::DriveState::operation_enabled)
-      done =
-          fail(drive_error(Errc::negative, node,
-                           fmt::format("was enabled but did not stay so: it is in {}", drive::name(*state)),
-                           "see `status` and `fault show`; `disable` it before anything else"));
-    if (!done) context.errors.push_back(done.error());
-    table.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
-                          state ? Value(drive::is_energised(*state)) : Value(),
-                          done ? result_text(context) : "failed",
-                          done ? Value() : show::error_record(done.error())});
-    if (done) context.notices.push_back(motion::energised_notice(*context.session, node));
-    if (!done) break;
-  }
+  Enabling enabling(context);
+  if (const auto begun = enabling.begin(arguments); !begun) return fail(begun.error());
+  session::Rehearsal rehearsal;
+  enabling.run(rehearsal);
+  if (context.dry_run) return show::planned_messages(context, rehearsal.messages());
+  auto table = enabling.table();
+  if (context.errors.empty())
+    for (const auto node : context.nodes)
+      context.notices.push_back(motion::energised_notice(*context.session, node));
   return Value(std::move(table));
 }
 
@@ -119,7 +198,9 @@ const Command kEnable{
     .details =
         "Shows the preflight checks, asks, sets the targets so that nothing moves (60FFh and 6071h to 0, "
         "607Ah to the actual position), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, "
-        "waiting for each state. The drive stays energised when a single command, or lines that ended without an error, are "
+        "waiting for each state. Of several nodes all are looked at before the first is enabled: where one is "
+        "refused none is, and where one fails those that were enabled before it are disabled again. "
+        "The drive stays energised when a single command, or lines that ended without an error, are "
         "done: `disable` de-energises it. Lines that end with an error, and a lost terminal, stop and disable it. Over "
         "EtherCAT it stays so only while servoctl exchanges process data with it: a single command holds it until "
         "Ctrl-C, and then stops and disables it. "

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/shared_profile.hpp"
+#include "report/catalogue.hpp"
 #include "show/explanation.hpp"
 #include "show/topic_page.hpp"
 
@@ -66,6 +67,7 @@ Result<Shelf> open_shelf(Context& context) {
 report::Value answer(std::vector<std::string> lines, std::span<const Explanation> all) {
   report::Table out;
   out.below = std::move(lines);
+  out.below_told = true;
   for (const auto& each : all) out.documents.emplace_back(show::explanation_record(each));
   return out;
 }
@@ -80,12 +82,19 @@ std::size_t page_width(const Context& context) {
 /// So many topics are told in full although only words in them fit; more are listed.
 constexpr std::size_t kFewTopics = 3;
 
-/// What fits is told in full, what only mentions the words is listed behind it.
+/// How many come before the first that was found by this, or by less.
+std::size_t count_before(std::span<const Explanation> all, Found found) {
+  const auto end =
+      std::find_if(all.begin(), all.end(), [&](const auto& each) { return each.found >= found; });
+  return static_cast<std::size_t>(end - all.begin());
+}
+
+/// What is called so is told in full; without such a thing rows in which the words stand. What else mentions
+/// them is listed.
 report::Value told(const Context& context, std::span<const Explanation> all) {
   const auto width = page_width(context);
-  const auto mentions = std::find_if(all.begin(), all.end(),
-                                     [](const Explanation& each) { return each.found >= Found::title; });
-  const auto fitting = static_cast<std::size_t>(mentions - all.begin());
+  const auto called = count_before(all, Found::row);
+  const auto fitting = called > 0 ? called : count_before(all, Found::title);
   const auto in_full = fitting == 0 && all.size() <= kFewTopics ? all.size() : fitting;
   std::vector<std::string> lines;
   const auto rule = [&] {
@@ -99,8 +108,12 @@ report::Value told(const Context& context, std::span<const Explanation> all) {
   }
   if (in_full < all.size()) {
     rule();
-    if (in_full > 0) lines.insert(lines.end(), {"topics that mention it:", ""});
-    auto list = show::topic_list(all.subspan(in_full), context.chinese, width);
+    constexpr std::string_view kMentions = "topics that mention it, for `explain NAME`:";
+    if (in_full > 0)
+      lines.insert(lines.end(),
+                   {std::string(context.chinese ? report::chinese_word(kMentions) : kMentions), ""});
+    auto list = in_full > 0 ? show::topic_names(all.subspan(in_full), context.chinese, width)
+                            : show::topic_list(all.subspan(in_full), context.chinese, width);
     lines.insert(lines.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
   }
   return answer(std::move(lines), all);
@@ -127,11 +140,15 @@ tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf,
   auto hint = did_you_mean(said, show::explained_names(shelf.libraries));
   if (hint.empty() && !family.empty())
     hint =
-        "`explain` lists the topics; `param search` and `fault list` look for words in parameters and faults";
-  if (family.empty()) append(hint, "-d FAMILY looks for words in what is known of it", " ");
+        "`explain` lists the topics; `param search WORD` and `fault list` look for words in parameters and faults";
+  if (family.empty()) {
+    std::string more = "-d FAMILY looks for words in what is known of it";
+    if (!hint.empty()) append(more, hint, "; ");
+    hint = std::move(more);
+  }
   return fail(Errc::negative,
-              fmt::format("nothing {}is called '{}' or mentions it",
-                          family.empty() ? "" : "of " + family + " ", said),
+              family.empty() ? fmt::format("nothing is called '{}' or mentions it", said)
+                             : fmt::format("nothing of {} is called '{}' or mentions it", family, said),
               std::move(hint));
 }
 

@@ -60,14 +60,24 @@ Result<Value> run_reset(Context& context, const Arguments&) {
   return Value(std::move(table));
 }
 
+bool history_is_empty(session::Session& session, std::uint8_t node) {
+  const auto count = session.upload(node, objects::kErrorHistory);
+  return count && !count->empty() && load_le(*count) == 0;
+}
+
 Result<Value> run_clear(Context& context, const Arguments&) {
+  auto table = reset_table();
   std::vector<session::PlannedMessage> planned;
-  for (const auto node : context.nodes)
-    planned.push_back(session::planned_write({node, objects::kErrorHistory, Bytes{0}}));
+  for (const auto node : context.nodes) {
+    if (history_is_empty(*context.session, node))
+      table.rows.push_back({node, "was empty", Value()});
+    else
+      planned.push_back(session::planned_write({node, objects::kErrorHistory, Bytes{0}}));
+  }
   if (context.dry_run) return show::planned_messages(context, planned);
+  if (planned.empty()) return Value(std::move(table));
   const auto question = fmt::format("Clear the fault history of {}?", whom_reset(context));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
-  auto table = reset_table();
   for (const auto& each : planned) {
     const auto node = each.node;
     const auto written = context.session->download(node, each.write->object, *each.write->data);
@@ -116,7 +126,7 @@ extern const Command kFaultClearHistory;
 const Command kFaultClearHistory{
     .path = "fault clear-history",
     .summary = "Clear the fault history of a drive (1003h)",
-    .details = "Writes 0 to 1003h:00 and reads it back.",
+    .details = "Writes 0 to 1003h:00 and reads it back; an empty history is left as it is.",
     .parameters = {},
     .examples = kFaultClearHistoryExamples,
     .needs = Needs::node,

@@ -80,6 +80,12 @@ class FaultReport {
     return show::fault_words(context_->profile, context_->chinese, code, vendor);
   }
 
+  /// An object of the family's own: the classes of CiA 301 are not for its codes.
+  std::string alarm(std::uint16_t code) {
+    (void)words(code);
+    return show::alarm_words(context_->profile, context_->chinese, code);
+  }
+
   std::string title_of(const drive::Fault& fault) const {
     if (!fault.panel.empty()) return fault.panel;
     return fault.code ? fmt::format("0x{:04X}", *fault.code) : "fault";
@@ -133,7 +139,7 @@ class FaultReport {
     out_.push_back({"alarm_text",
                     !answer     ? missing(target->address)
                     : code == 0 ? std::string("none")
-                                : shown_code(code, words(code)),
+                                : shown_code(code, alarm(code)),
                     Show::text, context_->chinese ? target->label_zh() : target->label()});
     out_.push_back({"alarm",
                     answer ? Value(Record{{"id", target->parameter != nullptr ? target->parameter->id

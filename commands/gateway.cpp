@@ -43,9 +43,10 @@ report::Record description(const Context& context, const gateway::Address& addre
   return {{"bus", context.session->url()}, {"listen", address.text()}, {"writes", writes}};
 }
 
-void stop_and_tell(Context& context, const std::set<std::uint8_t>& nodes) {
+void stop_and_tell(Context& context, motion::PowerWrites& written, const std::set<std::uint8_t>& nodes) {
   const auto before = context.errors.size();
   motion::stop_abandoned(context, nodes);
+  written.end(context, nodes);
   for (auto at = before; at < context.errors.size(); ++at)
     context.tell("error: " + context.errors[at].message + "\n");
 }
@@ -56,16 +57,22 @@ std::string two_numbers(std::string_view number) {
 }
 
 Result<void> serve(Context& context, gateway::Listener& listener, bool writes) {
+  motion::PowerWrites written;
   session::GatewayServer server(
       *context.session,
       {.writes = writes,
        .version = two_numbers(version()),
        .tell = [&](std::string_view line) { context.tell(fmt::format("notice: {}\n", line)); },
-       .stop = [&](const auto& nodes) { stop_and_tell(context, nodes); }});
+       .energises = [&](auto node, auto object,
+                        auto data) { return written.note(context.profile, node, object, data); },
+       .stop = [&](const auto& nodes) { stop_and_tell(context, written, nodes); }});
   auto served = session::serve_gateway(*context.session, listener, server);
   // Over a lost bus nothing can be stopped: the front end says so, and tries when it is back.
   const bool lost = !served && served.error().code == Errc::bus;
-  if (const auto nodes = server.energised(); !lost && !nodes.empty()) motion::stop_abandoned(context, nodes);
+  if (const auto nodes = server.energised(); !lost && !nodes.empty()) {
+    motion::stop_abandoned(context, nodes);
+    written.end(context, nodes);
+  }
   return served;
 }
 
@@ -102,7 +109,8 @@ const Command kGateway{
         "CiA 309-3 has neither login nor encryption, so it listens on this machine alone unless --listen names "
         "another address, and asks before that; a script needs --yes. Clients only read unless --allow write "
         "is given, which is asked for too: a write or an NMT command is refused with ERROR:102. A drive that a "
-        "client enables by 6040h is stopped and disabled when that client goes, or the gateway ends. PDOs, "
+        "client enables by 6040h is stopped and disabled when that client goes, or the gateway ends; with -d FAMILY "
+        "one that it energised by a parameter of that family too. PDOs, "
         "LSS, guarding and events are not part of it. `help` on the line lists what is. To use the gateway of "
         "another program, name it as a bus: --bus gateway://HOST:60000.",
     .parameters = kGatewayParameters,

@@ -8,7 +8,7 @@ using namespace command;
 
 constexpr Parameter kHelpParameters[] = {
     {.name = "command",
-     .help = "a command, a group, or a word of the prompt: read, param, param set, undo",
+     .help = "a command, a group, a word of the prompt, or an option: read, param, param set, undo, --for",
      .kind = Kind::command,
      .many = true},
 };

@@ -28,6 +28,10 @@ Value optional_number(const Result<Bytes>& bytes) {
   return bytes && bytes->size() <= 8 ? Value(load_le(*bytes)) : Value();
 }
 
+Value optional_byte(const Result<Bytes>& bytes) {
+  return bytes && bytes->size() <= 8 ? Value(report::Hex{load_le(*bytes), 2}) : Value();
+}
+
 /// Bits of 6502h in the abbreviations of CiA 402-2.
 Value modes_text(const Result<Bytes>& bytes) {
   if (!bytes || bytes->size() != 4) return {};
@@ -66,7 +70,7 @@ Value identity_record(const session::Identity& node, std::span<const drive::Fami
       {"product_code", optional_hex(node.product_code), report::Show::everywhere, "product"},
       {"revision", optional_hex(node.revision)},
       {"serial", optional_hex(node.serial)},
-      {"error_register", optional_number(more[0]), report::Show::everywhere, "error register"},
+      {"error_register", optional_byte(more[0]), report::Show::everywhere, "error register"},
       {"heartbeat_ms", optional_number(more[1]), report::Show::everywhere, "heartbeat (ms)"},
       {"modes", modes_text(more[2])}};
   add_state(out, node, *context.session);

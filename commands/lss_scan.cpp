@@ -82,8 +82,18 @@ Result<ScanWish> scan_wish(const Arguments& arguments) {
   return out;
 }
 
+std::string progress_text(const session::LssProgress& at) {
+  return at.again
+             ? fmt::format(
+                   "answers came late, asked again: LSS slaves found: {}; of the next identity {} of {} bits are known",
+                   at.found, at.known, at.bits)
+             : fmt::format("LSS slaves found: {}; of the next identity {} of {} bits are known", at.found,
+                           at.known, at.bits);
+}
+
 Result<std::vector<session::LssFound>> find(Context& context, const ScanWish& wish) {
   session::LssDialogue lss(*context.session, wish.patience);
+  lss.on_progress([&](const session::LssProgress& at) { context.show_progress(progress_text(at)); });
   std::vector<session::LssFound> out;
   if (wish.low) {
     const auto found = lss.search(*wish.low, *wish.high);
@@ -191,6 +201,8 @@ std::vector<Given> give(Context& context, std::span<const session::LssFound> fou
   std::vector<Given> out;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const session::LssSlave slave{found[i].address, canopen::kUnconfigured};
+    context.show_progress(
+        fmt::format("node-ID {} is given: LSS slave {} of {}", nodes[i], i + 1, found.size()));
     out.push_back({nodes[i], settings::give_lss_node(context, slave, {slave.address, nodes[i], keep})});
     const auto& outcome = out.back().outcome;
     if (outcome.error) context.errors.push_back(*outcome.error);

@@ -1,17 +1,16 @@
 #include <fmt/format.h>
-#include <algorithm>
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "command/duration_option.hpp"
+#include "command/interface_option.hpp"
 #include "command/lss_options.hpp"
 #include "command/setting_options.hpp"
 #include "drive/bitrate.hpp"
-#include "session/lss.hpp"
 #include "session/open_bus.hpp"
 #include "settings/address_change.hpp"
-#include "settings/lss_node.hpp"
+#include "settings/lss_bitrate.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -37,21 +36,15 @@ constexpr Parameter kLssSetBitrateParameters[] = {
 
 constexpr Duration kLongestDelay = std::chrono::milliseconds(0xFFFF);
 
-/// What a line asks for.
-struct BitrateWish {
-  std::uint8_t index = 0;
-  std::optional<std::uint32_t> bitrate;  ///< Empty: it is to find it itself.
-  std::optional<std::uint16_t> delay_ms;
-  bool all = false;
-  bool keep = false;
+using settings::BitrateSwitch;
+using settings::LssBitrateChange;
 
-  std::string rate_text() const {
-    return bitrate ? drive::bitrate_text(*bitrate) : std::string("automatic detection");
-  }
-};
+std::string rate_text(const LssBitrateChange& change) {
+  return change.bitrate ? drive::bitrate_text(*change.bitrate) : std::string("automatic detection");
+}
 
-Result<BitrateWish> bitrate_wish(const Context& context, const Arguments& arguments) {
-  BitrateWish out;
+Result<LssBitrateChange> bitrate_wish(const Context& context, const Arguments& arguments) {
+  LssBitrateChange out;
   out.all = arguments.has("--all");
   out.keep = arguments.has("--keep");
   if (lower(arguments.text("rate")) == "auto") {
@@ -85,82 +78,28 @@ Result<BitrateWish> bitrate_wish(const Context& context, const Arguments& argume
   return out;
 }
 
-std::vector<canopen::LssRequest> requests_of(const BitrateWish& wish) {
-  std::vector<canopen::LssRequest> out;
-  if (wish.all) out.push_back(canopen::lss_inquire(canopen::LssService::inquire_node));
-  out.push_back(canopen::lss_set_bit_timing(wish.index));
-  if (wish.keep) out.push_back(canopen::lss_store());
-  if (wish.delay_ms) out.push_back(canopen::lss_activate_bit_timing(*wish.delay_ms));
-  return out;
-}
-
-std::string question_lss_set_bitrate(const BitrateWish& wish) {
-  auto out = fmt::format("Set {} in {}?", wish.rate_text(),
-                         wish.all ? "every LSS slave on the bus" : "one LSS slave");
-  if (wish.delay_ms)
+std::string question_lss_set_bitrate(const LssBitrateChange& change, const BitrateSwitch& follower) {
+  auto out = fmt::format("Set {} in {}?", rate_text(change),
+                         change.all ? "every LSS slave on the bus" : "one LSS slave");
+  if (change.delay_ms)
     out += fmt::format(
         " It is in force after {} ms, twice that without a message: an axis in motion loses its master.",
-        *wish.delay_ms);
-  if (wish.delay_ms && !wish.all) out += " Whoever on the bus keeps another bitrate disturbs the rest.";
-  return out;
-}
-
-/// What holds after one of several slaves did not do as the others.
-std::string not_activated(const canopen::LssRequest& request, std::string_view more) {
-  const bool stores = request.answer == canopen::LssService::store;
-  return fmt::format(
-      "nothing was activated{}; {}",
-      stores ? ", but slaves that confirmed have stored it, and take it when they are switched on" : "",
-      more);
-}
-
-/// All who confirm; one that refuses is an error, and so is one of the `expected` that is silent.
-Result<std::size_t> order_all(session::LssDialogue& lss, const canopen::LssRequest& request,
-                              std::size_t expected, Duration patience) {
-  const auto answers = lss.ask(request, patience);
-  if (!answers) return fail(answers.error());
-  if (answers->empty() && expected == 0)
-    return fail(Errc::timeout, "no LSS slave answers on this bus", "many drives have no LSS");
-  const bool asks = request.answer == canopen::LssService::inquire_node;
-  const auto refused = std::find_if(answers->begin(), answers->end(),
-                                    [&](const auto& answer) { return !asks && answer.error != 0; });
-  if (refused != answers->end())
-    return fail(
-        Errc::negative,
-        fmt::format("an LSS slave of {} refuses: {}", answers->size(), canopen::lss_error_text(*refused)),
-        not_activated(request, "`lss inquire` shows what each slave is"));
-  if (answers->size() < expected)
-    return fail(Errc::negative,
-                fmt::format("of {} LSS slaves {} confirmed what was set", expected, answers->size()),
-                not_activated(request, "one that does not support a request may leave it unanswered"));
-  return answers->size();
-}
-
-Result<std::size_t> change_bitrate(session::LssDialogue& lss, const BitrateWish& wish, Duration patience) {
-  const auto slow = std::max(patience, settings::kLssStorePatience);
-  std::size_t slaves = wish.all ? 0 : 1;
-  for (const auto& request : requests_of(wish)) {
-    const bool stores = request.answer == canopen::LssService::store;
-    if (!request.answer) {
-      const auto sent = lss.ask(request);
-      if (!sent) return fail(sent.error());
-    } else if (wish.all) {
-      const auto done = order_all(lss, request, slaves, stores ? slow : patience);
-      if (!done) return fail(done.error());
-      slaves = *done;
-    } else if (const auto done = lss.order(request, stores ? "stored its configuration" : "set its bitrate",
-                                           stores ? slow : patience);
-               !done) {
-      return fail(done.error());
-    }
+        *change.delay_ms);
+  if (follower.follows()) {
+    out += " " + settings::lss_switch_text(follower);
+    if (const auto who = who_receives(follower.link->name()); !who.empty()) out += "; " + who;
+    return out + ".";
   }
-  return slaves;
+  if (change.delay_ms && !change.all) out += " Whoever on the bus keeps another bitrate disturbs the rest.";
+  return out;
 }
 
 /// What holds now, and what somebody has to do.
-void tell_bitrate(Context& context, const BitrateWish& wish) {
+void tell_bitrate(Context& context, const LssBitrateChange& wish, const BitrateSwitch& follower) {
+  if (follower.follows()) return;
+  if (follower.link != nullptr)
+    context.notices.push_back(fmt::format("{} is left alone: {}", follower.link->name(), follower.why_not));
   const auto url = session::canonical_url(context.session->url());
-  const bool has_bitrate = url.find(':') == std::string::npos || url.starts_with("socketcan:");
   if (!wish.delay_ms)
     context.notices.push_back(
         wish.keep
@@ -173,53 +112,74 @@ void tell_bitrate(Context& context, const BitrateWish& wish) {
           wish.delay_ms ? "now" : "then", *wish.bitrate));
     return;
   }
-  if (!has_bitrate) {
+  if (const auto link = session::link_of(url); !link || link->kind != "can") {
     context.notices.push_back(fmt::format(
         "{} has no bitrate: slaves that are simulated take it, and nothing follows", context.session->url()));
     return;
   }
-  if (!wish.bitrate) return;
-  const auto name = url.substr(url.find(':') == std::string::npos ? 0 : url.find(':') + 1);
+  if (!wish.bitrate || (follower.link && follower.before.bitrate == wish.bitrate)) return;
   context.notices.push_back(fmt::format(
       "{} the interface has to change as well: `bus up {} --bitrate {}`; then `lss inquire` or `scan`",
-      wish.delay_ms ? "now" : "then", name, *wish.bitrate));
+      wish.delay_ms ? "now" : "then", url, *wish.bitrate));
+}
+
+/// How the interface goes with the slaves, where they change now.
+Result<BitrateSwitch> lss_follower(Context& context, const LssBitrateChange& change) {
+  const auto name = session::canonical_url(context.session->url());
+  auto link = name.find(':') == std::string::npos ? can::open_link(name) : nullptr;
+  auto out = settings::plan_lss_switch(link ? std::move(*link) : nullptr, change);
+  if (!out || !out->follows()) return out;
+  if (const auto held = hold_energised(context, name); !held) return fail(held.error());
+  return out;
+}
+
+report::Record lss_bitrate_record(const LssBitrateChange& change,
+                                  const settings::LssBitrateOutcome& outcome) {
+  report::Record out;
+  if (outcome.address)
+    out = lss_identity_record(*outcome.address);
+  else
+    for (const auto* key : {"vendor_id", "product_code", "revision", "serial"})
+      out.push_back({key, {}, report::Show::json});
+  out.push_back({"slaves", outcome.slaves});
+  out.push_back({"bitrate", change.bitrate ? Value(*change.bitrate) : Value()});
+  out.push_back({"kept", change.keep});
+  out.push_back({"active_after_ms", change.delay_ms ? Value(*change.delay_ms) : Value()});
+  return out;
+}
+
+Result<Value> planned_lss_set_bitrate(Context& context, const LssBitrateChange& change,
+                                      const BitrateSwitch& follower) {
+  if (follower.follows())
+    context.notices.push_back(fmt::format("then {}, unless somebody would be left behind: nobody was asked",
+                                          settings::lss_switch_commands(follower)));
+  return lss_planned_frames({change.address}, settings::lss_bitrate_requests(change));
 }
 
 Result<Value> run_lss_set_bitrate(Context& context, const Arguments& arguments) {
-  const auto wish = bitrate_wish(context, arguments);
-  if (!wish) return fail(wish.error());
-  const auto choice = wish->all ? Result<LssChoice>(LssChoice{}) : lss_choice(context, arguments);
-  if (!choice) return fail(choice.error());
-  if (context.dry_run) return lss_planned_frames(*choice, requests_of(*wish));
-  if (wish->delay_ms)
+  auto change = bitrate_wish(context, arguments);
+  if (!change) return fail(change.error());
+  if (!change->all) {
+    const auto choice = lss_choice(context, arguments);
+    if (!choice) return fail(choice.error());
+    change->address = choice->address;
+  }
+  auto follower = lss_follower(context, *change);
+  if (!follower) return fail(follower.error());
+  if (context.dry_run) return planned_lss_set_bitrate(context, *change, *follower);
+  if (change->delay_ms)
     if (const auto still = settings::refuse_energised_nodes(*context.session, "the bitrate of its bus");
         !still)
       return fail(still.error());
-  if (const auto sure = context.confirm(question_lss_set_bitrate(*wish)); !sure) return fail(sure.error());
-  const auto patience = context.session->options().timeout;
-  session::LssDialogue lss(*context.session, patience);
-  report::Record out;
-  if (wish->all) {
-    const auto reset = lss.ask(canopen::lss_switch_all(canopen::LssState::waiting));
-    if (!reset) return fail(reset.error());
-    if (const auto sent = lss.select_all(); !sent) return fail(sent.error());
-    for (const auto* key : {"vendor_id", "product_code", "revision", "serial"})
-      out.push_back({key, {}, report::Show::json});
-  } else {
-    const auto slave = lss.select(choice->address);
-    if (!slave) return fail(slave.error());
-    out = lss_identity_record(slave->address);
-  }
-  const auto slaves = change_bitrate(lss, *wish, patience);
-  if (!slaves) return fail(slaves.error());
-  // Still at the old bitrate: what was activated waits for the delay first.
-  if (const auto left = lss.leave(); !left) context.errors.push_back(left.error());
-  out.push_back({"slaves", *slaves});
-  out.push_back({"bitrate", wish->bitrate ? Value(*wish->bitrate) : Value()});
-  out.push_back({"kept", wish->keep});
-  out.push_back({"active_after_ms", wish->delay_ms ? Value(*wish->delay_ms) : Value()});
-  tell_bitrate(context, *wish);
-  return Value(std::move(out));
+  if (const auto asked = settings::leave_nobody_behind(*context.session, *change, *follower); !asked)
+    return fail(asked.error());
+  if (const auto sure = context.confirm(question_lss_set_bitrate(*change, *follower)); !sure)
+    return fail(sure.error());
+  const auto outcome = settings::set_lss_bitrate(context, *change, *follower);
+  if (!outcome) return fail(outcome.error());
+  if (outcome->error) context.errors.push_back(*outcome->error);
+  tell_bitrate(context, *change, *follower);
+  return Value(lss_bitrate_record(*change, *outcome));
 }
 
 Result<void> check_lss_set_bitrate(Context& context, const Arguments& arguments) {
@@ -243,8 +203,11 @@ const Command kLssSetBitrate{
         "it in every slave that answers, and tells how many did: count them. It is in force when the slave "
         "starts again, if --keep stored it, or with --activate: then the slaves say nothing for the delay, "
         "change, say nothing for as long again, and go on: refused while a drive that answers on the bus "
-        "is energised. The interface is not changed by this; how is told. A node that keeps its bitrate on "
-        "a bus with another one disturbs everybody, so change all of them or none.",
+        "is energised. An interface of the kernel goes with them between the two silences, and the slaves are "
+        "looked for; where none answers and some do at the old bitrate, it goes back. It is left alone, and "
+        "what to do by hand is told, where it has no bitrate that can be set, where the right CAP_NET_ADMIN "
+        "is missing, where somebody on the bus would be left behind, and without --activate. A node that "
+        "keeps its bitrate on a bus with another one disturbs everybody, so change all of them or none.",
     .parameters = kLssSetBitrateParameters,
     .examples = kLssSetBitrateExamples,
     .needs = Needs::can,

@@ -74,8 +74,12 @@ Result<Value> run_lss_set_node(Context& context, const Arguments& arguments) {
   }
   const auto slave = settings::look_at_lss_slave(*context.session, change);
   if (!slave) return fail(slave.error());
-  if (const auto agreed = context.confirm(question_lss_set_node(*slave, change)); !agreed)
-    return fail(agreed.error());
+  context.free_nodes = {change.to};
+  auto agreed = context.confirm(question_lss_set_node(*slave, change));
+  // It may have been enabled meanwhile.
+  if (agreed && slave->node && !slave->is_unconfigured())
+    agreed = settings::refuse_energised(*context.session, *slave->node, "its address");
+  if (!agreed) return fail(agreed.error());
   const auto outcome = settings::give_lss_node(context, *slave, change);
   if (outcome.error) context.errors.push_back(*outcome.error);
   auto out = lss_identity_record(slave->address);

@@ -14,7 +14,8 @@ Result<report::Value> run_man(Context&, const Arguments&) {
 }
 
 constexpr Example kManExamples[] = {
-    {"man", "its source; `servoctl man | man -l -` shows it as a page"},
+    {"man", "on a terminal the page, where there is a program that shows it"},
+    {"man --no-pager", "its source"},
 };
 
 }  // namespace
@@ -24,7 +25,9 @@ const Command kMan{
     .path = "man",
     .summary = "Print the manual page of servoctl",
     .details =
-        "For `man` to show: `servoctl man | man -l -`. An installed servoctl includes it: `man servoctl`.",
+        "As a command of its own on a terminal it is shown by `man -l -`, with the pager of that. At the prompt, "
+        "in a pipe, with --no-pager, or without a program `man` it is the source. An installed servoctl includes "
+        "it: `man servoctl`.",
     .parameters = {},
     .examples = kManExamples,
     .needs = Needs::nothing,

@@ -59,11 +59,6 @@ Result<void> check_change(Context& context, const WantedMode& wanted) {
                           "`disable` it first"));
 }
 
-Result<void> change(Context& context, const WantedMode& wanted) {
-  if (const auto possible = check_change(context, wanted); !possible) return possible;
-  return motion::set_mode(*context.session, *context.profile, wanted.node, wanted.mode);
-}
-
 Value planned_mode(Context& context, std::int8_t mode) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes) {
@@ -90,7 +85,9 @@ Result<Value> run_mode(Context& context, const Arguments& arguments) {
                    {"result"},
                    {"error", "", Show::json}};
   for (const auto node : context.nodes) {
-    const auto done = wanted ? change(context, {node, *wanted}) : Result<void>{};
+    const auto possible = wanted ? check_change(context, {node, *wanted}) : Result<void>{};
+    const auto done =
+        possible && wanted ? motion::set_mode(*context.session, *context.profile, node, *wanted) : possible;
     const auto mode = motion::read_mode(*context.session, node);
     if (!done) context.errors.push_back(done.error());
     if (done && !mode) context.errors.push_back(mode.error());
@@ -98,9 +95,10 @@ Result<Value> run_mode(Context& context, const Arguments& arguments) {
     table.rows.push_back({node,
                           mode ? Value(motion::mode_text(*context.profile, *mode, context.chinese)) : Value(),
                           mode ? Value(*mode) : Value(),
-                          failure != nullptr ? "failed"
-                          : wanted           ? "set"
-                                             : "",
+                          !possible && mode    ? "not changed"
+                          : failure != nullptr ? "failed"
+                          : wanted             ? "set"
+                                               : "",
                           failure != nullptr ? show::error_record(*failure) : Value()});
   }
   return Value(std::move(table));

@@ -122,7 +122,8 @@ class Monitor {
     for (const auto& event : context_->session->take_events()) {
       if (!is_loss(event)) continue;
       ++lost_;
-      const auto text = "ALARM " + show::event_text(event, context_->profile, context_->chinese);
+      const auto text =
+          fmt::format("ALARM {}", show::event_text(event, context_->profile, context_->chinese));
       log_->remark(event.time - begin_, "alarm", event.node, text, "heartbeat-lost");
     }
   }
@@ -153,7 +154,8 @@ Result<Value> run_monitor(Context& context, const Arguments& arguments) {
   view.reset();
   if (!ended) return fail(ended.error());
   auto summary = monitor.summary();
-  if (context.keeps_samples) summary.push_back({"samples", log.take_kept()});
+  summary.push_back(
+      {"samples", context.keeps_samples ? Value(log.take_kept()) : Value(), report::Show::json});
   return Value(std::move(summary));
 }
 

@@ -9,7 +9,7 @@ using namespace command;
 
 constexpr auto kMoveParameters = with_motion_options(std::to_array<Parameter>({
     {.name = "target",
-     .help = "90deg, 2rev, the drive's own counts, or 20mm where the cabinet file tells the load",
+     .help = "90deg, 2rev, 1000inc (the drive's own counts), or 20mm where the cabinet file tells the load",
      .kind = Kind::value,
      .required = true},
     {.name = "--relative", .help = "relative to the actual position", .kind = Kind::flag},
@@ -56,7 +56,8 @@ const Command kMove{
     .path = "move",
     .summary = "Go to a position",
     .details =
-        "Profile position mode with the set-point handshake, supervised and ended like `jog`. The move is "
+        "Profile position mode, with the set-point handshake where the family has it (else 607Ah is followed at "
+        "once), supervised and ended like `jog`. The move is "
         "done when the drive reports target reached, is at standstill, and is at the target position; a "
         "distance that the drive's counts cannot represent to 1 % is refused. Afterwards the drive is "
         "disabled: the motor does not hold its position.",

@@ -7,6 +7,7 @@
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/gateway_network.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -183,8 +184,9 @@ Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtC
   };
   const bool hopeless = heartbeats.silent.size() == before.size();
   const auto patience = is_reset(command) ? kBootPatience : std::max(kStatePatience, 2 * heartbeats.longest);
-  const auto waited =
-      context.session->wait(done, context.session->now() + (hopeless ? Duration::zero() : patience));
+  const auto until = context.session->now() + (hopeless ? Duration::zero() : patience);
+  const session::Stretch stretch(*context.session, until, session::Stretch::End::at_latest);
+  const auto waited = context.session->wait(done, until);
   if (!waited) return fail(waited.error());
   if (tells) tell_reset(context, before, true);
   for (const auto& entry : before)

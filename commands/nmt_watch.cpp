@@ -7,6 +7,7 @@
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/scan.hpp"
+#include "session/stretch.hpp"
 #include "show/notice.hpp"
 #include "traffic/listening.hpp"
 
@@ -226,7 +227,8 @@ Result<Value> run_nmt_watch(Context& context, const Arguments& arguments) {
     for (const auto node : *nodes) session.can()->guard(node, {*plan->guard_time, plan->life_factor});
   else
     log.told(ask_for_heartbeats(session, *nodes));
-  const auto end = plan->length ? session.now() + *plan->length : kNever;
+  const session::Stretch stretch(session, plan->length ? session.now() + *plan->length : kNever);
+  const auto end = stretch.end();
   Result<bool> waited = false;
   while (waited && session.now() < end) {
     waited = session.wait([] { return false; }, std::min(end, session.now() + kSlice));

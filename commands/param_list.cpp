@@ -2,6 +2,7 @@
 
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "show/object_records.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::commands {
@@ -14,6 +15,7 @@ constexpr Parameter kParamListParameters[] = {
 };
 
 Result<report::Value> run_param_list(Context& context, const Arguments& arguments) {
+  if (const auto any = show::check_parameters(*context.profile); !any) return fail(any.error());
   const auto pattern = arguments.text("pattern");
   std::vector<const od::Parameter*> found;
   std::vector<std::string> groups;
@@ -24,9 +26,9 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
       found.push_back(&parameter);
   }
   if (found.empty())
-    return fail(
-        Errc::negative, fmt::format("no parameter of {} matches '{}'", context.profile->family, pattern),
-        groups.empty() ? "this family has no table of panel parameters" : "groups: " + one_of(groups));
+    return fail(Errc::negative,
+                fmt::format("no parameter of {} matches '{}'", context.profile->family, pattern),
+                "groups: " + one_of(groups));
   return report::Value(show::parameter_table(found, context.chinese));
 }
 

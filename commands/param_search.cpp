@@ -3,6 +3,7 @@
 
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "show/object_records.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::commands {
@@ -29,6 +30,7 @@ int rank(const od::Parameter& p, std::string_view word) {
 }
 
 Result<report::Value> run_param_search(Context& context, const Arguments& arguments) {
+  if (const auto any = show::check_parameters(*context.profile); !any) return fail(any.error());
   std::vector<std::pair<int, const od::Parameter*>> found;
   std::string said;
   for (const auto& word : arguments.all("word")) append(said, word, " ");

@@ -21,28 +21,50 @@ constexpr Parameter kParamSetParameters[] = {
     kUnlockOption,
 };
 
-Result<void> check_param_set(Context& context, const Arguments& arguments) {
+struct WantedValue {
+  drive::Target target;
+  std::string_view id;
+  std::string_view value;
+};
+
+/// What the words say; Errc::usage too for one parameter with two values: the drive would hold the last of
+/// them.
+Result<std::vector<WantedValue>> wanted_values(const Context& context, const Arguments& arguments) {
   const auto assignments = parse_assignments(arguments.all("assignment"));
   if (!assignments) return fail(assignments.error());
+  std::vector<WantedValue> out;
   for (const auto& assignment : *assignments) {
     const auto target = drive::resolve_panel(*context.profile, assignment.id);
     if (!target) return fail(target.error());
-    for (const auto node : context.nodes)
-      if (const auto fits = settings::check_change(context, node, *target, assignment.value, {}); !fits)
-        return fits;
+    const auto same = std::find_if(out.begin(), out.end(), [&](const WantedValue& wanted) {
+      return wanted.target.address == target->address;
+    });
+    if (same != out.end())
+      return fail(Errc::usage,
+                  fmt::format("two values for one parameter: {}={} and {}={}", same->id, same->value,
+                              assignment.id, assignment.value),
+                  "nothing was written; say each parameter once");
+    out.push_back({*target, assignment.id, assignment.value});
   }
+  return out;
+}
+
+Result<void> check_param_set(Context& context, const Arguments& arguments) {
+  const auto wanted = wanted_values(context, arguments);
+  if (!wanted) return fail(wanted.error());
+  for (const auto& [target, id, value] : *wanted)
+    for (const auto node : context.nodes)
+      if (const auto fits = settings::check_change(context, node, target, value, {}); !fits) return fits;
   return {};
 }
 
 Result<report::Value> run_param_set(Context& context, const Arguments& arguments) {
-  const auto assignments = parse_assignments(arguments.all("assignment"));
-  if (!assignments) return fail(assignments.error());
+  const auto wanted = wanted_values(context, arguments);
+  if (!wanted) return fail(wanted.error());
   std::vector<settings::Change> changes;
   for (const auto node : context.nodes) {
-    for (const auto& assignment : *assignments) {
-      const auto target = drive::resolve_panel(*context.profile, assignment.id);
-      if (!target) return fail(target.error());
-      auto change = settings::make_change(context, node, *target, assignment.value, {});
+    for (const auto& [target, id, value] : *wanted) {
+      auto change = settings::make_change(context, node, target, value, {});
       if (!change) return fail(change.error());
       changes.push_back(std::move(*change));
     }

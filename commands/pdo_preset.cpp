@@ -27,7 +27,7 @@ Result<const drive::PdoPreset*> preset_of(const Context& context, const Argument
   for (const auto& preset : presets) names.push_back(preset.name);
   return fail(Errc::usage,
               fmt::format("the manual of {} has no mapping for '{}'", context.profile->family, word),
-              names.empty() ? "it has none; `pdo map` makes one" : "use " + one_of(names));
+              names.empty() ? "it has none; `pdo map` makes one" : fmt::format("use {}", one_of(names)));
 }
 
 Result<void> check_pdo_preset(Context& context, const Arguments& arguments) {

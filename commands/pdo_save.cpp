@@ -52,6 +52,7 @@ const Command kPdoSave{
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_pdo_save,
+    .one_file = "file",
 };
 
 }  // namespace servoctl::commands

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/transfer_option.hpp"
@@ -57,7 +59,7 @@ Result<std::vector<drive::Target>> fitting_targets(const Context& context, std::
   });
   if (out.empty())
     return fail(Errc::usage, "no object that can be read fits '" + pattern + "'",
-                "`objects '" + pattern + "'` lists what fits");
+                fmt::format("`objects '{}'` lists what fits", pattern));
   return out;
 }
 
@@ -157,6 +159,7 @@ const Command kRead{
     .effect = Effect::reads,
     .run = run_read,
     .check = check_read,
+    .one_file = "--to",
     .on_registers = true,
 };
 

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <algorithm>
 #include <functional>
 
 #include "base/number.hpp"
@@ -29,13 +30,42 @@ constexpr Parameter kReplayParameters[] = {
     {.name = "--master",
      .help = "only what a master sends: NMT, SYNC, TIME, SDO requests, RPDOs",
      .kind = Kind::flag},
+    {.name = "--channel",
+     .help = "which bus of a recording of several, as `decode` names it: can1",
+     .kind = Kind::text},
 };
+
+/// How frames of a service are counted.
+struct Counted {
+  std::string_view service;
+  std::string_view one;
+  std::string_view several;
+};
+constexpr Counted kCounted[] = {
+    {"nmt", "1 NMT command", "{} NMT commands"},
+    {"sync", "1 SYNC message", "{} SYNC messages"},
+    {"time", "1 TIME message", "{} TIME messages"},
+    {"emcy", "1 emergency message", "{} emergency messages"},
+    {"pdo", "1 PDO message", "{} PDO messages"},
+    {"sdo", "1 SDO message", "{} SDO messages"},
+    {"boot-up", "1 boot-up message", "{} boot-up messages"},
+    {"heartbeat", "1 heartbeat", "{} heartbeats"},
+    {"guarding", "1 guarding frame", "{} guarding frames"},
+    {"lss", "1 LSS message", "{} LSS messages"},
+};
+constexpr Counted kOthers{"other", "1 other frame", "{} other frames"};
+
+std::string counted(std::string_view service, std::size_t count) {
+  const auto* found = std::ranges::find(kCounted, service, &Counted::service);
+  const auto& words = found != std::end(kCounted) ? *found : kOthers;
+  return count == 1 ? std::string(words.one) : fmt::format(fmt::runtime(words.several), count);
+}
 
 std::string question_replay(const traffic::ReplayPlan& plan, std::string_view file, std::string_view bus) {
   std::string services;
-  for (const auto& [service, count] : plan.services) append(services, fmt::format("{} {}", count, service));
+  for (const auto& [service, count] : plan.services) append(services, counted(service, count));
   auto out =
-      fmt::format("Send the {} frames of {} on {} again ({})?", plan.frames.size(), file, bus, services);
+      fmt::format("Send the {} frames of {} on {} again: {}?", plan.frames.size(), file, bus, services);
   if (!plan.moving.empty())
     out +=
         fmt::format(" {} of them can move a motor: {}.", plan.dangerous(), traffic::kinds_text(plan.moving));
@@ -63,14 +93,24 @@ report::Table kinds_table(const traffic::FrameKinds& kinds) {
   return out;
 }
 
+report::Table services_table(const traffic::ReplayPlan& plan) {
+  report::Table out;
+  out.columns = {{"service"}, {"frames"}};
+  for (const auto& [service, count] : plan.services) out.rows.push_back({service, count});
+  return out;
+}
+
 std::string failure_text(const Context& context, const traffic::ReplayFailure& failure) {
   const auto label = drive::target_at(context.profile, failure.object).label();
-  return fmt::format("{} {}{} of node {} {}", failure.write ? "write of" : "read of",
-                     to_string(failure.object), label.empty() ? "" : " " + label, failure.node,
-                     failure.abort_code
-                         ? fmt::format("refused: {} (abort 0x{:08X})",
-                                       show::abort_words(context, *failure.abort_code), *failure.abort_code)
-                         : std::string("not answered"));
+  const auto object = to_string(failure.object) + (label.empty() ? "" : " " + label);
+  if (!failure.abort_code)
+    return fmt::format(fmt::runtime(failure.write ? "write of {} of node {} not answered"
+                                                  : "read of {} of node {} not answered"),
+                       object, failure.node);
+  return fmt::format(fmt::runtime(failure.write ? "write of {} of node {} refused: {} (abort 0x{:08X})"
+                                                : "read of {} of node {} refused: {} (abort 0x{:08X})"),
+                     object, failure.node, show::abort_words(context, *failure.abort_code),
+                     *failure.abort_code);
 }
 
 /// What became of the SDO requests; exit code 1 where one was in vain.
@@ -168,16 +208,32 @@ void tell_plan(Context& context, const traffic::ReplayPlan& plan, std::string_vi
         "left out, taken as TPDOs by CAN-ID only (not confirmed by a drive or family): {}", dropped));
 }
 
+std::string_view channel_of(const Arguments& arguments) {
+  return arguments.has("--channel") ? arguments.text("--channel") : std::string_view();
+}
+
+/// What is recorded in the file, of one bus.
+Result<std::string> recording_of(const Arguments& arguments) {
+  const auto file = arguments.text("file");
+  auto text = traffic::read_recording(file);
+  if (!text) return text;
+  if (const auto one = traffic::check_channel(file, *text, channel_of(arguments)); !one)
+    return fail(one.error());
+  return text;
+}
+
 Result<Value> run_replay(Context& context, const Arguments& arguments) {
   const auto file = arguments.text("file");
   const auto speed = replay_speed(arguments);
   if (!speed) return fail(speed.error());
-  const auto text = traffic::read_recording(file);
+  const auto text = recording_of(arguments);
   if (!text) return fail(text.error());
-  const auto drives = traffic::find_drives(context, *text);
+  const traffic::ReplayChoice choice{.only = arguments.all("--only"),
+                                     .of_master = arguments.has("--master"),
+                                     .channel = channel_of(arguments)};
+  const auto drives = traffic::find_drives(context, *text, choice.channel);
   if (!drives) return fail(drives.error());
-  const auto plan = traffic::plan_replay(
-      context, {.only = arguments.all("--only"), .of_master = arguments.has("--master")}, *text, *drives);
+  const auto plan = traffic::plan_replay(context, choice, *text, *drives);
   tell_plan(context, plan, file);
   if (auto whole = traffic::check_damage(file, plan.strays); !whole) {
     whole.error().hint = "no frame of it was sent; `decode` shows what stands in front of that byte";
@@ -201,10 +257,7 @@ Result<Value> run_replay(Context& context, const Arguments& arguments) {
   } else {
     for (const auto* key : {"sent", "failures"}) answer.push_back({key, Value(), report::Show::json});
   }
-  report::Table services;
-  services.columns = {{"service"}, {"frames"}};
-  for (const auto& [service, count] : plan.services) services.rows.push_back({service, count});
-  answer.push_back({"services", std::move(services)});
+  answer.push_back({"services", services_table(plan)});
   answer.push_back({"moving", kinds_table(plan.moving), shown(!plan.moving.empty()), "can move a motor"});
   answer.push_back({"lasting", kinds_table(plan.lasting), shown(!plan.lasting.empty()), "last or restart"});
   return Value(std::move(answer));
@@ -224,10 +277,12 @@ const Command kReplay{
     .details =
         "Keeps the times between the frames, unless --speed says otherwise. It sends the frames of drives "
         "and masters alike: if the real drives are connected, --master leaves theirs out; --only selects "
-        "services. It first reads the PDOs of the drives in the recording, then asks you, stating how many "
-        "of the frames can move a motor (NMT start, SYNC, RPDOs, writes to objects from 2000h up) and which "
-        "store, restart or re-address a drive; --dry-run only counts. After Ctrl-C or an error the drives "
-        "are stopped and disabled; any that a complete replay leaves energised is listed. Exit code 1 if a "
+        "services, --channel one bus of a recording of several, which is refused without it. It first reads the "
+        "PDOs of the drives in the recording, then asks you, stating how many of the frames can move a motor (NMT "
+        "start, SYNC, RPDOs and PDOs of unknown direction, writes to objects from 2000h up except those that a "
+        "family's data says need a restart) and which store, restart or re-address a drive; --dry-run only reads "
+        "and counts. After Ctrl-C or an error the drives are stopped and disabled, over a connection that was "
+        "lost once it is back; any that a complete replay leaves energised is listed. Exit code 1 if a "
         "drive refused an SDO request or did not answer it. To have commands answered by a recording "
         "instead, use --bus replay:FILE.",
     .parameters = kReplayParameters,

@@ -2,15 +2,21 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
 #include <utility>
 
 #include "canopen/node_list.hpp"
 #include "command/command.hpp"
 #include "drive/bitrate.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/adapter_link.hpp"
 #include "session/answer.hpp"
 #include "session/bitrate_search.hpp"
 #include "session/identify.hpp"
+#include "session/modbus_network.hpp"
+#include "session/own_bitrate.hpp"
 #include "session/ring_scan.hpp"
 #include "show/bitrate_scan.hpp"
 #include "show/identity.hpp"
@@ -85,6 +91,14 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
 Result<report::Value> scan_registers(Context& context) {
   const bool all = !context.nodes_typed || context.nodes.empty() || context.nodes.front() == 0;
   const auto nodes = all ? canopen::every_node_id() : context.nodes;
+  if (all) {
+    const auto patience =
+        std::min(context.session->options().timeout, context.session->modbus()->scan_patience());
+    context.tell(
+        fmt::format("{} addresses are asked one after the other, which takes up to {:.0f} s; -n 1-10 asks "
+                    "these alone\n",
+                    nodes.size(), std::ceil(std::chrono::duration<double>(patience * nodes.size()).count())));
+  }
   const auto found = session::scan(*context.session, nodes);
   if (!found) return fail(found.error());
   if (!found->empty()) return report::Value(show::register_scan(context, *found));
@@ -92,8 +106,7 @@ Result<report::Value> scan_registers(Context& context) {
               context.session->network().silence_hint(nodes.front()));
 }
 
-Result<report::Value> planned_bitrates(const Context& context) {
-  if (const auto possible = show::check_all_bitrates(context); !possible) return fail(possible.error());
+report::Value planned_bitrates() {
   report::Table table;
   table.columns = {{"bitrate", "", report::Show::json}, {"bitrate_text", "bitrate", report::Show::text}};
   for (const auto bitrate : session::usual_bitrates())
@@ -108,7 +121,10 @@ Result<report::Value> run_scan(Context& context, const Arguments& arguments) {
   if (context.session->modbus() != nullptr && !all_bitrates) return scan_registers(context);
   auto nodes = context.nodes_typed ? context.nodes : std::vector<std::uint8_t>();
   if (nodes.empty() || nodes.front() == 0) nodes = canopen::every_node_id();
-  if (all_bitrates && context.dry_run) return planned_bitrates(context);
+  if (all_bitrates && context.dry_run) return planned_bitrates();
+  // The interface is put back, or left where nodes answered, on every way out.
+  const auto hold = context.session->protect(all_bitrates ? session::Care::unsettled : session::Care::none);
+  const auto named = all_bitrates ? std::make_unique<session::NamedBitrate>(*context.session) : nullptr;
   auto found =
       all_bitrates ? show::scan_all_bitrates(context, nodes) : session::scan(*context.session, nodes);
   if (!found) return fail(found.error());
@@ -124,6 +140,12 @@ Result<report::Value> run_scan(Context& context, const Arguments& arguments) {
   for (const auto& node : *found) there.push_back(node.node);
   return report::Value(show::identity_table(context, *found, conditions_of(*context.session, there), families,
                                             arguments.has("--long")));
+}
+
+Result<void> check_scan(Context& context, const Arguments& arguments) {
+  const auto url = context.front_end == nullptr ? std::string_view() : context.front_end->bus_url();
+  if (!arguments.has("--all-bitrates") || url.empty()) return {};
+  return session::check_own_bitrate(url, "scan --all-bitrates");
 }
 
 constexpr Example kScanExamples[] = {
@@ -148,7 +170,8 @@ const Command kScan{
         "both. --all-bitrates asks at each bitrate until nodes answer, for a bus on which nobody talks: it listens at the "
         "present bitrate first and refuses when it hears anything (`bus detect` finds that bitrate without sending). "
         "It asks before, and needs --yes in a script; the interface stays at the bitrate where nodes answered, and is "
-        "put back to the one it had where none did. On EtherCAT, shows the ring: for each position (its node number) the "
+        "put back to the one it had where none did. An adapter behind slcan: is put back in any case, to the bitrate "
+        "in the name of its bus; which name it needs from then on is told. On EtherCAT, shows the ring: for each position (its node number) the "
         "address, name by the SII, AL state, ports with a link and, as notices, every error counter that is not "
         "0; of slaves in PRE-OP and above that servoctl has numbered also the drive's state and fault (`status -n "
         "all` takes the others there). Nothing is changed: no state is entered, no address given, and a ring that "
@@ -160,6 +183,7 @@ const Command kScan{
     .effect = Effect::links,
     .reads_without = "--all-bitrates",
     .run = run_scan,
+    .check = check_scan,
     .on_registers = true,
 };
 

@@ -89,7 +89,7 @@ class Scope {
   }
 
   /// A drive that does not give the objects at the first look ends it, and so does one that gives something
-  /// else than numbers; later on a gap stays.
+  /// else than numbers; later on a gap stays, unless it is the bus that is lost.
   Result<void> look(TimePoint now) {
     std::vector<std::size_t> wanted;
     for (std::size_t i = 0; i < due_.size(); ++i)
@@ -98,11 +98,10 @@ class Scope {
     const bool first = std::exchange(first_, false);
     const auto samples = sampler_->read(wanted);
     gather();
+    if (const auto* ended = traffic::end_of_looks(samples)) return fail(*ended);
     for (const auto& sample : samples) {
       const auto i = sample.channel;
-      const bool failed = !sample.bytes.has_value();
-      if (failed && (first || sample.bytes.error().code == Errc::interrupted))
-        return fail(sample.bytes.error());
+      if (!sample.bytes && first) return fail(sample.bytes.error());
       if (first)
         if (const auto number = traffic::check_number(sampler_->channels()[i], *sample.bytes); !number)
           return number;

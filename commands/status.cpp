@@ -103,7 +103,6 @@ void add_drive_state(Record& out, const Context& context, std::optional<std::uin
 }
 
 /// In the short form.
-constexpr std::size_t kFaultWords = 30;
 
 show::ToldFault fault_of(const Context& context, std::span<const Result<Bytes>> answers) {
   const auto word = [&](std::size_t i) {
@@ -224,7 +223,7 @@ List overview_row(const Context& context, std::uint8_t node, std::span<const Res
     state = context.chinese ? drive::name_zh(decoded) : drive::name(decoded);
   }
   return {node, network_cell(context, node), std::move(state), mode_cell(context, answers[1]),
-          fault_of(context, answers).cell(kFaultWords)};
+          fault_of(context, answers).cell(std::string::npos)};
 }
 
 Result<report::Value> run_status(Context& context, const Arguments& arguments) {
@@ -269,7 +268,8 @@ const Command kStatus{
     .summary = "Show the state of drives, one line each: NMT or AL, CiA 402, mode, fault",
     .details =
         "Reads statusword, mode, error code and error register. A mode is shown by its number and its "
-        "abbreviation in CiA 402. --long shows the statusword with its bits, the error register and the fault in "
+        "abbreviation in CiA 402, or, where a family counts its modes in its own way, by that family's name "
+        "for it. --long shows the statusword with its bits, the error register and the fault in "
         "full; JSON always has all of it. The NMT state comes from the heartbeat; if "
         "the node sends one, status waits for it. On EtherCAT the slave is asked for its AL state; in SAFE-OP and "
         "OP --long shows the counts of process data as well.",

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "command/command.hpp"
+#include "settings/address_change.hpp"
 #include "show/planned_messages.hpp"
 #include "show/records.hpp"
 
@@ -37,6 +38,8 @@ struct Words {
 struct Method {
   Result<void> (*carry_out)(session::Session&, const drive::Profile*, std::uint8_t, ParameterGroup);
   Result<std::vector<session::SdoRequest>> (*writes)(const drive::Profile*, std::uint8_t, ParameterGroup);
+  /// Gains and limits are no things to change under a drive that holds a load.
+  bool changes_settings = false;
 };
 
 Value planned_store(Context& context, ParameterGroup group, const Method& method) {
@@ -55,6 +58,10 @@ Result<Value> carry_out(Context& context, const Arguments& arguments, const Meth
   const auto group = group_of(arguments);
   if (!group) return fail(group.error());
   if (context.dry_run) return planned_store(context, *group, method);
+  if (method.changes_settings)
+    for (const auto node : context.nodes)
+      if (const auto still = settings::refuse_energised(*context.session, node, "its settings"); !still)
+        return fail(still.error());
   const auto whom = context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
                                               : fmt::format("{} nodes", context.nodes.size());
   if (const auto answer = context.confirm(fmt::format(fmt::runtime(words.question), whom)); !answer)
@@ -76,7 +83,7 @@ Result<Value> run_store(Context& context, const Arguments& arguments) {
 }
 
 Result<Value> run_defaults(Context& context, const Arguments& arguments) {
-  return carry_out(context, arguments, {session::restore_defaults, session::restore_writes},
+  return carry_out(context, arguments, {session::restore_defaults, session::restore_writes, true},
                    {"Restore the factory values of {}? What is set now is lost (`backup` keeps it).",
                     "restored; takes effect after a restart of the drive"});
 }
@@ -110,7 +117,9 @@ extern const Command kDefaults;
 const Command kDefaults{
     .path = "defaults",
     .summary = "Restore the factory values of a drive",
-    .details = "Writes \"load\" to 1011h, or uses the family's own method. Takes effect after a restart.",
+    .details =
+        "Writes \"load\" to 1011h, or uses the family's own method. Takes effect after a restart. "
+        "A drive that is energised is refused.",
     .parameters = kStoreParameters,
     .examples = kDefaultsExamples,
     .needs = Needs::node,

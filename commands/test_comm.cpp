@@ -53,6 +53,7 @@ const Command kTestComm{
     .needs = Needs::node,
     .effect = Effect::reads,
     .run = run_test_comm,
+    .one_file = "--junit",
 };
 
 }  // namespace servoctl::commands

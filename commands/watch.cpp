@@ -41,13 +41,14 @@ class WatchingValues {
           {.columns = {{.title = "node", .right = true}, {.title = "object"}, {.title = "value"}}});
   }
 
-  /// Errc of the first look when nothing could be read; a failure later on is shown and counted.
+  /// Errc of the first look when nothing could be read; a failure later on is shown and counted, unless it is
+  /// the bus that is lost.
   Result<void> look(Duration since) {
     const auto samples = sampler_->take();
+    if (const auto* ended = traffic::end_of_looks(samples)) return fail(*ended);
     const auto failed =
         std::find_if(samples.begin(), samples.end(), [](const traffic::Sample& s) { return !s.bytes; });
-    const bool interrupted = failed != samples.end() && failed->bytes.error().code == Errc::interrupted;
-    if (interrupted || (looks_++ == 0 && failed != samples.end())) return fail(failed->bytes.error());
+    if (looks_++ == 0 && failed != samples.end()) return fail(failed->bytes.error());
     const auto seconds = std::chrono::duration<double>(since).count();
     for (std::size_t i = 0; i < samples.size(); ++i) records_[i].add(seconds, samples[i]);
     if (view_) show(samples);
@@ -68,7 +69,8 @@ class WatchingValues {
     for (auto& error : traffic::failures_of(before_)) context_->errors.push_back(std::move(error));
     report::Record out{{"objects", traffic::sampling_table(records_)}};
     if (plot) out.push_back({"plot", report::Plot{traffic::series_of(records_)}, report::Show::text});
-    if (context_->keeps_samples) out.push_back({"samples", writer_.take_kept()});
+    out.push_back(
+        {"samples", context_->keeps_samples ? Value(writer_.take_kept()) : Value(), report::Show::json});
     return out;
   }
 

@@ -104,7 +104,7 @@ const Command kWrite{
     .path = kPath,
     .summary = "Write one object of a node",
     .details =
-        "The value is checked against type and limits before a frame is sent. A plain number is the raw "
+        "The value is checked against type and limits before anything is written. A plain number is the raw "
         "number the drive shows; a number with a unit is converted. A write is never repeated: if its answer "
         "is lost, the object is read and the outcome reported. Asks before a write that stores or restores "
         "parameters, changes node-ID or bitrate, or enables the drive by the controlword. With --from a file "

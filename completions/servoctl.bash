@@ -7,8 +7,16 @@ _servoctl() {
   case ${COMP_WORDS[COMP_CWORD-1]} in
     *'>' | *'<' | *'>|') COMPREPLY=(); compopt -o default; return ;;
   esac
+  # A word before the cursor that is a variable stands for its value; nothing else is expanded.
+  local line=${COMP_LINE:0:COMP_POINT} before name
+  before=${line%[[:blank:]]*}
+  line=${line:${#before}}
+  while [[ "$before " =~ ^(.*[[:blank:]])\"?\$\{?([A-Za-z_][A-Za-z0-9_]*)\}?\"?([[:blank:]].*)$ ]]; do
+    name=${BASH_REMATCH[2]}
+    before=${BASH_REMATCH[1]}$(printf %q "${!name}")${BASH_REMATCH[3]% }
+  done
   mapfile -t answer < <("$program" __complete bash "${COMP_TYPE:-9}" "${COLUMNS:-80}" "$COMP_WORDBREAKS" \
-    "${COMP_LINE:0:COMP_POINT}" 2>/dev/null)
+    "$before$line" 2>/dev/null)
   COMPREPLY=("${answer[@]:1}")
   case ${answer[0]-} in
     files) compopt -o default ;;

@@ -8,6 +8,9 @@ add_library(servoctl_source_dir STATIC source_dir.cpp)
 target_include_directories(servoctl_source_dir PRIVATE ${CMAKE_SOURCE_DIR})
 target_compile_definitions(servoctl_source_dir PRIVATE SERVOCTL_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
 
+add_library(servoctl_tests_main STATIC main.cpp)
+target_link_libraries(servoctl_tests_main PUBLIC GTest::gtest)
+
 set(layers_by_length commands session od sim motion cabinet cli)
 
 # tests/ mirrors src/: one program a layer.
@@ -17,7 +20,7 @@ function(servoctl_tests layer)
     return()
   endif()
   add_executable(${layer}_tests ${sources})
-  target_link_libraries(${layer}_tests PRIVATE ${ARGN} servoctl_options fmt::fmt GTest::gtest GTest::gtest_main ${rapidcheck_library})
+  target_link_libraries(${layer}_tests PRIVATE ${ARGN} servoctl_options fmt::fmt servoctl_tests_main ${rapidcheck_library})
   target_include_directories(${layer}_tests PRIVATE ${CMAKE_SOURCE_DIR})
   target_link_libraries(${layer}_tests PRIVATE servoctl_source_dir servoctl_fixed_version)
   # What is tested has both sanitizers; of the tests themselves addresses are checked, which is a third quicker to compile.

@@ -31,6 +31,9 @@ struct Close {
 };
 using FilePtr = std::unique_ptr<std::FILE, Close>;
 
+/// Where nobody asked for a file, none is worth a longer wait.
+constexpr std::uintmax_t kMostUnasked = std::uintmax_t{32} << 20U;
+
 constexpr auto kAsItIs = static_cast<uid_t>(-1);  ///< Also of a group.
 constexpr std::string_view kOtherFolder = "choose an existing folder you may write to";
 /// How long a pipe, a terminal or a device may take nothing.
@@ -234,11 +237,18 @@ Result<void> write_through(const fs::path& path, const Target& target, std::stri
 }  // namespace
 
 Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+  const bool regular_only = RegularFilesOnly::hold();
   struct stat found {};
-  if (RegularFilesOnly::hold() && ::stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode))
+  const auto is_regular = [&](int error) { return error != 0 || S_ISREG(found.st_mode); };
+  // Before it is opened, and behind that: another may stand there now.
+  if (regular_only && !is_regular(::stat(path.c_str(), &found)))
     return fail(Errc::file, fmt::format("{} is no regular file", path.string()));
-  const FilePtr file(std::fopen(path.c_str(), "rbe"));
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular_only ? O_NONBLOCK | O_NOCTTY : 0));
+  const FilePtr file(fd < 0 ? nullptr : ::fdopen(fd, "rb"));
   if (!file) return fail(Errc::file, fmt::format("cannot open {}: {}", path.string(), why(errno)));
+  if (regular_only && !is_regular(::fstat(fd, &found)))
+    return fail(Errc::file, fmt::format("{} is no regular file", path.string()));
+  if (regular_only) max_bytes = std::min(max_bytes, kMostUnasked);
   std::string content;
   char chunk[65536];
   for (;;) {
@@ -272,6 +282,8 @@ Result<void> check_writable(const std::filesystem::path& path) {
 Result<void> write_file_atomically(const std::filesystem::path& path, std::string_view content) {
   const auto target = target_of(path);
   if (!target) return fail(target.error());
+  if (target->kind != Target::Kind::regular && RegularFilesOnly::hold())
+    return fail(Errc::file, fmt::format("{} is no regular file", path.string()));
   if (target->kind != Target::Kind::regular) return write_through(path, *target, content);
   Temporary file(*target);
   file.fill(content);

@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include "base/file.hpp"
+
 namespace servoctl {
 namespace {
 
@@ -19,9 +21,14 @@ bool is_there(const std::filesystem::path& path, int fd) {
          open.st_ino == named.st_ino;
 }
 
+/// That it cannot be said keeps nobody from holding it.
+void say_holder(int fd, std::string_view holder) {
+  if (::ftruncate(fd, 0) == 0) (void)!::write(fd, holder.data(), holder.size());
+}
+
 }  // namespace
 
-Result<std::optional<FileLock>> FileLock::take(const std::filesystem::path& path) {
+Result<std::optional<FileLock>> FileLock::take(const std::filesystem::path& path, std::string_view holder) {
   for (;;) {
     const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (fd < 0 && (errno == EACCES || errno == EROFS)) return std::optional(FileLock({}, -1));
@@ -37,9 +44,18 @@ Result<std::optional<FileLock>> FileLock::take(const std::filesystem::path& path
       return fail(Errc::file,
                   fmt::format("cannot lock {}: {}", path.string(), std::generic_category().message(error)));
     }
-    if (is_there(path, fd)) return std::optional(FileLock(path, fd));
+    if (is_there(path, fd)) {
+      say_holder(fd, holder);
+      return std::optional(FileLock(path, fd));
+    }
     ::close(fd);
   }
+}
+
+std::string FileLock::holder(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMostBytes = 4096;
+  const auto text = read_file(path, kMostBytes);
+  return text ? *text : std::string();
 }
 
 FileLock::~FileLock() {

@@ -42,6 +42,7 @@ struct Error {
   std::optional<ObjectAddress> object;      ///< Set when one object is concerned.
   std::optional<std::uint32_t> abort_code;  ///< Set only with Errc::sdo_abort (CiA 301, 7.2.4.3.17).
   std::optional<std::uint32_t> line;        ///< Line of the file the error is in, from 1.
+  bool may_be_done = false;                 ///< A write that was sent: whether it was done nothing tells.
 };
 
 template <class T>

@@ -1,5 +1,6 @@
 #include "base/text.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -43,6 +44,46 @@ std::vector<std::string_view> unbroken_pieces(std::string_view word) {
     at += c.size;
   }
   out.push_back(word.substr(begin));
+  return out;
+}
+
+/// The line in words. What stands in backticks is typed as it is read: it is one, where there is room for it.
+std::vector<std::string_view> words_of(std::string_view line, std::size_t room) {
+  std::vector<std::string_view> out;
+  std::size_t begin = 0;
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    if (line[at] == '`') {
+      const auto close = line.find('`', at + 1);
+      if (close != std::string_view::npos && close - at < room) at = close;
+    } else if (line[at] == ' ') {
+      out.push_back(line.substr(begin, at - begin));
+      begin = at + 1;
+    }
+  }
+  out.push_back(line.substr(begin));
+  return out;
+}
+
+std::string wrapped_line(std::string_view line, std::size_t indent, std::size_t width) {
+  std::string out;
+  std::size_t used = 0;
+  for (const auto word : words_of(line, width > indent ? width - indent : 0)) {
+    std::size_t blank = 1;
+    for (const auto piece : unbroken_pieces(word)) {
+      const auto size = display_width(piece);
+      if (used > 0 && width > 0 && indent + used + blank + size > width) {
+        out += '\n' + std::string(indent, ' ');
+        used = 0;
+      }
+      if (used > 0) {
+        out.append(blank, ' ');
+        used += blank;
+      }
+      out += piece;
+      used += size;
+      blank = 0;
+    }
+  }
   return out;
 }
 
@@ -123,23 +164,9 @@ std::string clip(std::string_view text, std::size_t width) {
 
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {
   std::string out;
-  std::size_t used = 0;
-  for (const auto word : split(text, ' ')) {
-    std::size_t blank = 1;
-    for (const auto piece : unbroken_pieces(word)) {
-      const auto size = display_width(piece);
-      if (used > 0 && width > 0 && indent + used + blank + size > width) {
-        out += '\n' + std::string(indent, ' ');
-        used = 0;
-      }
-      if (used > 0) {
-        out.append(blank, ' ');
-        used += blank;
-      }
-      out += piece;
-      used += size;
-      blank = 0;
-    }
+  for (const auto line : split(text, '\n')) {
+    if (line.data() != text.data()) out += '\n';
+    out += wrapped_line(line, indent, width);
   }
   return out;
 }
@@ -197,7 +224,12 @@ std::string one_of(std::span<const std::string> words) {
 
 std::string did_you_mean(std::string_view text, std::span<const std::string> candidates) {
   const auto best = nearest(text, candidates);
-  return best.empty() ? std::string() : "did you mean " + one_of(best) + "?";
+  switch (best.size()) {
+    case 0: return {};
+    case 1: return fmt::format("did you mean {}?", best[0]);
+    case 2: return fmt::format("did you mean {} or {}?", best[0], best[1]);
+    default: return fmt::format("did you mean {}, {} or {}?", best[0], best[1], best[2]);
+  }
 }
 
 }  // namespace servoctl

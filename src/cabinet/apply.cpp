@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/file.hpp"
+#include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_run.hpp"
 #include "cabinet/displaced.hpp"
 #include "session/option_scope.hpp"
@@ -147,10 +148,10 @@ class Applying {
 
   Result<void> write(show::Desk& desk, AxisRun& run) const {
     const auto& axis = *run.look->axis;
-    const auto wanted = wanted_file(*cabinet_, axis);
+    if (const auto single = wait_for_second(desk, axis); !single) return single;
     if (!desk.dry_run && !options_->resume)
-      if (const auto noted =
-              write_file_atomically(wanted, settings::backup_text(desk, run.look->plan->wanted));
+      if (const auto noted = write_file_atomically(wanted_file(*cabinet_, axis, run.look->plan->before),
+                                                   settings::backup_text(desk, run.look->plan->wanted));
           !noted)
         return noted;
     session::StatePause pause(*desk.session, axis.node);
@@ -160,13 +161,13 @@ class Applying {
                                          before_file(*cabinet_, axis), restoring(run));
     if (done) {
       run.end = end_of(done->end);
+      run.in_flash = done->in_flash;
       if (desk.dry_run) run.frames = done->answer;
     }
     const auto left = pause.leave(run.end != AxisEnd::failed);
     desk.notices.insert(desk.notices.end(), pause.notices().begin(), pause.notices().end());
-    forget_wanted(axis);
-    if (!done) return fail(done.error());
-    return left;
+    forget_wanted(run);
+    return done ? left : Result<void>(fail(done.error()));
   }
 
   static bool needs_pause(const AxisPlan& plan) {
@@ -184,10 +185,10 @@ class Applying {
   }
 
   /// What was to be written is needed as long as there is something to resume.
-  void forget_wanted(const Axis& axis) const {
+  void forget_wanted(const AxisRun& run) const {
     std::error_code ignored;
-    if (!fs::exists(settings::journal_of(before_file(*cabinet_, axis)), ignored))
-      fs::remove(wanted_file(*cabinet_, axis), ignored);
+    if (const auto& before = run.look->plan->before; !fs::exists(settings::journal_of(before), ignored))
+      fs::remove(wanted_file(*cabinet_, *run.look->axis, before), ignored);
   }
 
   bool any_failed() const {
@@ -198,16 +199,13 @@ class Applying {
   void undo() {
     if (desk_->dry_run) return;
     std::vector<std::size_t> numbers;
-    const auto written = [](const AxisRun& run) {
-      return run.end == AxisEnd::applied || run.end == AxisEnd::not_kept;
-    };
-    const auto at = stations(written, numbers);
+    const auto at = stations([](const AxisRun& run) { return run.is_written(); }, numbers);
     at_all(at, [&](std::size_t i) { put_back(runs_[numbers[i]]); });
   }
 
   void put_back(AxisRun& run) const {
     const auto& axis = *run.look->axis;
-    const auto file = before_file(*cabinet_, axis);
+    const auto& file = run.look->plan->before;
     auto desk = desk_at(*desk_, run.station);
     AskedBefore asked;
     desk.audience = &asked;
@@ -215,11 +213,11 @@ class Applying {
     const session::Deaf deaf(*desk.session);
     auto how = restoring(run);
     how.resume = false;
+    // What a drive worked with in its RAM are trials: none of them goes to the flash.
+    how.keep = how.keep && run.in_flash.empty();
     how.expected.reset();
     const auto done = put_back_from(desk, axis, file, needs_pause(*run.look->plan), how);
-    run.end = done && (done->end == RestoreEnd::done || done->end == RestoreEnd::idle) ? AxisEnd::undone
-                                                                                       : AxisEnd::failed;
-    if (!done) run.errors.push_back(done.error());
+    run.end_undo(done);
     run.errors.insert(run.errors.end(), desk.errors.begin(), desk.errors.end());
     run.notices.insert(run.notices.end(), desk.notices.begin(), desk.notices.end());
   }

@@ -43,6 +43,17 @@ Result<session::Identity> hold_axis_identity(show::Desk& desk, const Axis& axis,
   return identity;
 }
 
+Result<void> wait_for_second(show::Desk& desk, const Axis& axis) {
+  if (desk.dry_run) return {};
+  const std::uint8_t nodes[] = {axis.node};
+  const auto heard = session::settle_duplicates(*desk.session, nodes, session::kBeforeMotion);
+  if (const auto single = heard ? session::refuse_duplicate(*desk.session, axis.node) : heard; !single)
+    return single;
+  if (!axis.serial) return {};
+  const auto identity = session::read_identity(*desk.session, axis.node);
+  return identity ? hold_serial(axis, *identity) : fail(identity.error());
+}
+
 std::string serial_text(std::uint32_t serial) {
   return serial == 0 ? std::string("none") : fmt::format("{0} (0x{0:08X})", serial);
 }

@@ -18,6 +18,11 @@ namespace servoctl::cabinet {
 Result<session::Identity> hold_axis_identity(show::Desk& desk, const Axis& axis,
                                              std::span<const drive::Family> families);
 
+/// Before something is written for good: a second node of that number which answers late is waited for, as
+/// before a motion, and the serial number is asked for again where the drive has started since. Errc::refused
+/// when there is one, or it is another drive. Nothing is to be written in a dry run.
+Result<void> wait_for_second(show::Desk& desk, const Axis& axis);
+
 /// As the file writes it, and as `info` does: `305419896 (0x12345678)`; `none` for 0.
 std::string serial_text(std::uint32_t serial);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,9 +26,10 @@ struct PlanChoice {
 /// What differs between the file and one drive.
 struct AxisPlan {
   session::Identity identity;
-  settings::Backup wanted;    ///< Everything the file says of it, changed or not.
-  session::Values present;    ///< What the drive held of that.
-  std::size_t different = 0;  ///< Values that are to be written.
+  settings::Backup wanted;       ///< Everything the file says of it, changed or not.
+  session::Values present;       ///< What the drive held of that.
+  std::filesystem::path before;  ///< Where what it holds is noted before the first write.
+  std::size_t different = 0;     ///< Values that are to be written.
   std::size_t compared = 0;
   report::Value differences;  ///< A table: what each is, what the drive holds, what the file says.
   report::Value unlisted;     ///< A table: what is not in the file, nor as the factory left it; null: none.

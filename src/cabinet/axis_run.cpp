@@ -53,6 +53,7 @@ std::string_view text_of(AxisEnd end) {
     case AxisEnd::applied: return "applied";
     case AxisEnd::not_kept: return "applied, but not kept; see the error";
     case AxisEnd::as_before: return "put back: every value is as it was before";
+    case AxisEnd::flash_changed: return "put back, but its flash may not be as it was; see the errors";
     case AxisEnd::undone: return "put back, because another axis failed";
     case AxisEnd::failed: return "failed; see the errors";
   }
@@ -66,6 +67,7 @@ AxisEnd end_of(RestoreEnd end) {
     case RestoreEnd::done: return AxisEnd::applied;
     case RestoreEnd::not_kept: return AxisEnd::not_kept;
     case RestoreEnd::rolled_back: return AxisEnd::as_before;
+    case RestoreEnd::flash_changed: return AxisEnd::flash_changed;
     case RestoreEnd::astray:
     case RestoreEnd::left: break;
   }
@@ -74,7 +76,14 @@ AxisEnd end_of(RestoreEnd end) {
 
 bool AxisRun::has_failed() const {
   return end == AxisEnd::untouched || end == AxisEnd::not_kept || end == AxisEnd::as_before ||
-         end == AxisEnd::failed;
+         end == AxisEnd::flash_changed || end == AxisEnd::failed;
+}
+
+void AxisRun::end_undo(const Result<settings::Restored>& done) {
+  const bool is_back = done && (done->end == RestoreEnd::done || done->end == RestoreEnd::idle);
+  end = !is_back ? AxisEnd::failed : in_flash.empty() ? AxisEnd::undone : AxisEnd::flash_changed;
+  if (!done) errors.push_back(done.error());
+  if (!in_flash.empty()) errors.push_back(settings::flash_error(station.profile, look->axis->node, in_flash));
 }
 
 std::vector<std::string> unstated(const AxisRun& run) {

@@ -15,10 +15,12 @@ enum class AxisEnd : std::uint8_t {
   nothing_to_do,  ///< It held all already.
   planned,        ///< With --dry-run.
   applied,
-  not_kept,   ///< Every value is as wanted; keeping it failed.
-  as_before,  ///< It failed, and every value is as it was before.
-  undone,     ///< It was applied and put back, because another axis failed.
-  failed      ///< Some values are neither, or are not known.
+  not_kept,       ///< Every value is as wanted; keeping it failed.
+  as_before,      ///< It failed, and every value is as it was before.
+  flash_changed,  ///< Put back, whatever failed, but for what went to the flash of a drive that worked in
+                  ///< RAM.
+  undone,         ///< It was applied and put back, because another axis failed.
+  failed          ///< Some values are neither, or are not known.
 };
 std::string_view text_of(AxisEnd end);
 AxisEnd end_of(settings::RestoreEnd end);
@@ -32,11 +34,14 @@ struct AxisRun {
   report::Value frames;  ///< With --dry-run.
   std::vector<Error> errors;
   std::vector<std::string> notices;
+  std::vector<ObjectAddress> in_flash;  ///< As in session::RestoreOutcome.
 
   /// Whether every value is as wanted.
   bool is_written() const { return end == AxisEnd::applied || end == AxisEnd::not_kept; }
   /// It did not come to be as wanted.
   bool has_failed() const;
+  /// It was to be put back, because another axis failed.
+  void end_undo(const Result<settings::Restored>& done);
 };
 
 /// What was written to the axis, and of which no manual tells whether it is kept.

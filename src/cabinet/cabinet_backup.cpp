@@ -103,7 +103,7 @@ Value table_of(std::span<const SavedAxis> axes, const fs::path& folder) {
                  {"node"},
                  {"family"},
                  {"file"},
-                 {"values"},
+                 {"values", "values saved"},
                  {"left_out", "left out"},
                  {"error", "", report::Show::json}};
   for (const auto& saved : axes)

@@ -106,7 +106,7 @@ class AxisCheck {
                        [&](const auto& name) { return equals_nocase(name, pdos.preset); }))
         add(pdos.at,
             make_error(Errc::file, fmt::format("{} has no PDO preset '{}'", profile_->family, pdos.preset),
-                       names.empty() ? "it has none" : "it has " + one_of(names)));
+                       names.empty() ? "it has none" : fmt::format("it has {}", one_of(names))));
     }
     if (pdos.file.empty()) return check_recipes(pdos.recipes);
     const auto file = pdo::read_pdo_source(*profile_, cabinet_->file.parent_path() / pdos.file);
@@ -137,10 +137,9 @@ class AxisCheck {
       return fail(Errc::file, fmt::format("'{}' is not a PDO", name), "RPDO1, TPDO2: as the drive sees them");
     const ObjectAddress mapping{pdo->mapping_index(), 0};
     if (profile_->is_generic() || drive::target_at(profile_, mapping).entry != nullptr) return {};
-    return fail(Errc::file,
-                fmt::format("{} has no {}", profile_->family, canopen::name(pdo->direction, pdo->number)),
-                fmt::format("`objects '0x{:02X}*' -d {}` lists what it has", mapping.index >> 8U,
-                            profile_->family));
+    return fail(
+        Errc::file, fmt::format("{} has no {}", profile_->family, canopen::name(pdo->direction, pdo->number)),
+        fmt::format("`objects '0x{:02X}*' -d {}` lists what it has", mapping.index >> 8U, profile_->family));
   }
 
   void check_limits() {

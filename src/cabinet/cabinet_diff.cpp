@@ -43,14 +43,25 @@ class CabinetDifference {
       tell(fmt::format("{} in one of {} and {} only",
                        in_one_ == 1 ? "1 axis stands" : fmt::format("{} axes stand", in_one_), a_->title,
                        b_->title));
-    return Value(Record{{"compared", compared_},
-                        {"different", different_},
-                        {"axes_in_one", in_one_, Show::json},
-                        {"differences", table_, Show::json},
-                        {"table", table_.rows.empty() ? Value() : Value(table_), Show::text, "differences"}});
+    return Value(
+        Record{{"compared", compared_},
+               {"different", different_},
+               {"axes_in_one", in_one_, Show::json},
+               {"differences", table_, Show::json},
+               {"table", table_.rows.empty() ? Value() : Value(shown()), Show::text, "differences"}});
   }
 
  private:
+  /// The table, with the names that the family of each axis has in the language of who reads.
+  Table shown() const {
+    constexpr std::size_t kName = 2;
+    auto out = table_;
+    for (auto& row : out.rows)
+      if (const auto* name = std::get_if<std::string>(&row[kName].data()))
+        if (const auto found = chinese_.find(*name); found != chinese_.end()) row[kName] = found->second;
+    return out;
+  }
+
   void tell(std::string what) { desk_->errors.push_back(make_error(Errc::negative, std::move(what))); }
 
   Result<void> compare_axis(const std::string& name) {
@@ -101,6 +112,7 @@ class CabinetDifference {
       const auto label = target ? target->label() : std::string();
       const auto name = !target ? setting.name : label.empty() ? to_string(target->address) : label;
       out[name] = target ? plain(axis, *target, setting.value) : setting.value;
+      if (desk_->chinese && target && !label.empty()) chinese_[name] = target->label_zh();
     }
     return out;
   }
@@ -176,6 +188,7 @@ class CabinetDifference {
   const CabinetSide* b_;
   const LoadProfile* load_;
   Table table_;
+  std::map<std::string, std::string> chinese_;  ///< What a label is in Chinese.
   std::size_t compared_ = 0;
   std::size_t different_ = 0;
   std::size_t in_one_ = 0;  ///< Axes that the other side does not have.

@@ -5,7 +5,8 @@
 #include <map>
 
 #include "base/text.hpp"
-#include "settings/restore_journal.hpp"
+#include "session/identify.hpp"
+#include "settings/interrupted_restore.hpp"
 #include "show/axis_names.hpp"
 #include "show/records.hpp"
 
@@ -18,31 +19,66 @@ using report::Show;
 using report::Table;
 using report::Value;
 
-/// Looks for a journal first: what an axis holds in the middle of a change is no basis for another.
-Result<AxisPlan> look_at(show::Desk& desk, const Cabinet& cabinet, const Axis& axis, const PlanChoice& choice,
-                         bool resume) {
-  const auto before = before_file(cabinet, axis);
-  const auto journal = settings::read_journal(desk, settings::journal_of(before));
-  if (!journal) return fail(journal.error());
-  if (!*journal) return plan_axis(desk, cabinet, axis, choice);
-  if (!resume)
-    return fail(drive_error(Errc::refused, axis.node, "an apply was interrupted",
-                            fmt::format("`cabinet apply --resume` continues it; `restore {} -n {}` restores "
-                                        "the old values",
-                                        before.string(), axis.name)));
-  auto wanted = settings::read_backup(wanted_file(cabinet, axis));
+bool is_cut_off(const Cabinet& cabinet, const Axis& axis) {
+  std::error_code ignored;
+  const auto names = settings::before_names(before_file(cabinet, axis));
+  return std::any_of(names.begin(), names.end(), [&](const auto& before) {
+    return std::filesystem::exists(settings::journal_of(before), ignored);
+  });
+}
+
+Result<settings::BeforeFile> find_before(const show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
+                                         const session::Identity& drive) {
+  return settings::BeforeFile::find(desk, before_file(cabinet, axis), cabinet.file.string(), drive);
+}
+
+Result<AxisPlan> plan_anew(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
+                           const PlanChoice& choice) {
+  auto plan = plan_axis(desk, cabinet, axis, choice);
+  if (!plan) return plan;
+  const auto before = find_before(desk, cabinet, axis, plan->identity);
+  if (!before) return fail(before.error());
+  plan->before = before->path();
+  return plan;
+}
+
+Result<AxisPlan> plan_rest(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
+                           const PlanChoice& choice, const settings::BeforeFile& before) {
+  auto wanted = settings::read_backup(wanted_file(cabinet, axis, before.path()));
   if (!wanted) return fail(wanted.error());
   // It is what a file says, not what a drive held.
   wanted->proven = false;
   auto all = choice;
   all.only.clear();
   all.unlisted = false;
-  return plan_axis(desk, cabinet, axis, std::move(*wanted), all);
+  auto plan = plan_axis(desk, cabinet, axis, std::move(*wanted), all);
+  if (plan) plan->before = before.path();
+  return plan;
 }
 
-bool is_cut_off(const Cabinet& cabinet, const Axis& axis) {
-  std::error_code ignored;
-  return std::filesystem::exists(settings::journal_of(before_file(cabinet, axis)), ignored);
+Error interrupted(const Axis& axis, const std::filesystem::path& before) {
+  return drive_error(Errc::refused, axis.node, "an apply was interrupted",
+                     fmt::format("`cabinet apply --resume` continues it; `restore {} -n {}` restores the old "
+                                 "values",
+                                 before.string(), axis.name));
+}
+
+/// Looks for a journal first: what an axis holds in the middle of a change is no basis for another.
+Result<AxisPlan> look_at(show::Desk& desk, const Cabinet& cabinet, const Axis& axis, const PlanChoice& choice,
+                         bool resume) {
+  if (!is_cut_off(cabinet, axis)) return plan_anew(desk, cabinet, axis, choice);
+  const auto drive = session::read_identity(*desk.session, axis.node);
+  // Of which drive it is cannot be asked: nothing is begun anew.
+  if (!drive) return fail(resume ? drive.error() : interrupted(axis, before_file(cabinet, axis)));
+  const auto before = find_before(desk, cabinet, axis, *drive);
+  if (!before) return fail(before.error());
+  const auto journal = settings::read_journal(desk, before->journal());
+  if (!journal) return fail(journal.error());
+  if (!*journal && resume)
+    return fail(settings::nothing_to_resume(*before, cabinet.file.string(), axis.node));
+  if (!*journal) return plan_anew(desk, cabinet, axis, choice);
+  return resume ? plan_rest(desk, cabinet, axis, choice, *before)
+                : Result<AxisPlan>(fail(interrupted(axis, before->path())));
 }
 
 /// The axes of one session whose PDOs change, held against each other and those who share the bus: the one
@@ -148,8 +184,11 @@ std::string count_text(std::size_t count, std::string_view one, std::string_view
 }
 
 std::string differing(std::span<const PlannedAxis> looks) {
-  return count_text(values_to_do(looks), "value", "values") + " of " +
-         count_text(axes_to_do(looks), "axis", "axes");
+  const auto values = values_to_do(looks);
+  const auto axes = axes_to_do(looks);
+  if (values == 1) return "1 value of 1 axis";
+  return axes == 1 ? fmt::format("{} values of 1 axis", values)
+                   : fmt::format("{} values of {} axes", values, axes);
 }
 
 std::string to_do_text(std::span<const PlannedAxis> looks) {
@@ -166,8 +205,11 @@ std::filesystem::path before_file(const Cabinet& cabinet, const Axis& axis) {
   return fmt::format("{}.before-{}.json", cabinet.file.string(), axis.name);
 }
 
-std::filesystem::path wanted_file(const Cabinet& cabinet, const Axis& axis) {
-  return fmt::format("{}.wanted-{}.json", cabinet.file.string(), axis.name);
+std::filesystem::path wanted_file(const Cabinet& cabinet, const Axis& axis,
+                                  const std::filesystem::path& before) {
+  const auto usual = before_file(cabinet, axis).stem().string();
+  return fmt::format("{}.wanted-{}{}", cabinet.file.string(), axis.name,
+                     before.filename().string().substr(usual.size()));
 }
 
 std::vector<PlannedAxis> look_at_all(const show::Desk& desk, const Cabinet& cabinet,
@@ -227,8 +269,9 @@ bool any_to_do(std::span<const PlannedAxis> looks) { return axes_to_do(looks) > 
 Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
   return make_error(
       Errc::negative,
-      fmt::format("{} {} from {}", differing(looks), values_to_do(looks) == 1 ? "differs" : "differ",
-                  cabinet.file.filename().string()),
+      values_to_do(looks) == 1
+          ? fmt::format("{} differs from {}", differing(looks), cabinet.file.filename().string())
+          : fmt::format("{} differ from {}", differing(looks), cabinet.file.filename().string()),
       "`cabinet apply` writes them");
 }
 

@@ -40,9 +40,11 @@ bool any_to_do(std::span<const PlannedAxis> looks);
 /// The exit code 1 of a plan by which there is something to do.
 Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks);
 
-/// Where the values of an axis from before an apply are kept, and what was to be written to it; both beside
-/// the cabinet file.
+/// Where the values of an axis from before an apply are kept, unless that has those of another drive (see
+/// settings::BeforeFile); beside the cabinet file.
 std::filesystem::path before_file(const Cabinet& cabinet, const Axis& axis);
-std::filesystem::path wanted_file(const Cabinet& cabinet, const Axis& axis);
+/// What was to be written to it, beside that for which its values from before are in `before`.
+std::filesystem::path wanted_file(const Cabinet& cabinet, const Axis& axis,
+                                  const std::filesystem::path& before);
 
 }  // namespace servoctl::cabinet

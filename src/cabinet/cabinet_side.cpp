@@ -1,4 +1,5 @@
 #include "cabinet/cabinet_side.hpp"
+#include "base/number.hpp"
 
 #include <fmt/format.h>
 #include <system_error>
@@ -70,7 +71,8 @@ std::map<std::string, std::string> said_of(const Axis& axis) {
   say(out, "serial", axis.serial);
   say(out, "turn", axis.turn);
   say(out, "encoder", axis.encoder);
-  if (axis.load) say(out, "load", fmt::format("{:.9g} {}/rev", axis.load->per_rev, axis.load->unit));
+  if (axis.load)
+    say(out, "load", fmt::format("{} {}/rev", plain_number(axis.load->per_rev, 9), axis.load->unit));
   say(out, "limits speed", axis.limits.speed);
   say(out, "limits torque", axis.limits.torque);
   say(out, "limits window", axis.limits.window);

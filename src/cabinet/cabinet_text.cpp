@@ -8,7 +8,10 @@
 #include "drive/standard_objects.hpp"
 #include "pdo/pdo_changing.hpp"
 #include "pdo/pdo_recipes.hpp"
+#include "report/catalogue.hpp"
+#include "report/chinese_marks.hpp"
 #include "session/measure.hpp"
+#include "session/open_port.hpp"
 #include "session/pdo_setup.hpp"
 #include "session/snapshot.hpp"
 #include "settings/backup_formats.hpp"
@@ -51,49 +54,65 @@ std::string line_of(const show::Desk& desk, std::uint8_t node, ObjectAddress obj
   return fmt::format("{} = {}{}", key, value, label.empty() ? "" : "  # " + label);
 }
 
-std::string who(const session::Identity& identity) {
+std::string who(const session::Identity& identity, bool chinese) {
+  const auto say = [chinese](const std::string& english) {
+    return chinese ? report::in_chinese(english) : english;
+  };
   std::string out;
   if (identity.device_name.size() > 1) append(out, settings::comment_text(identity.device_name));
-  if (identity.vendor_id.value_or(0) != 0) append(out, fmt::format("vendor 0x{:08X}", *identity.vendor_id));
+  if (identity.vendor_id.value_or(0) != 0)
+    append(out, say(fmt::format("vendor 0x{:08X}", *identity.vendor_id)));
   if (identity.product_code.value_or(0) != 0)
-    append(out, fmt::format("product 0x{:08X}", *identity.product_code));
+    append(out, say(fmt::format("product 0x{:08X}", *identity.product_code)));
   if (!identity.software_version.empty())
-    append(out, "software " + settings::comment_text(identity.software_version));
-  return out;
+    append(out, say(fmt::format("software {}", settings::comment_text(identity.software_version))));
+  return chinese ? report::chinese_marks(out) : out;
 }
 
-std::string family_lines(const FoundAxis& axis) {
+/// A comment of the file, in the language of who reads.
+std::string_view comment(std::string_view english, bool chinese) {
+  return chinese ? report::chinese_word(english) : english;
+}
+
+std::string family_lines(const FoundAxis& axis, bool chinese) {
   if (axis.family.empty())
-    return "# No family fits: name one (`servoctl drives`) or an .eds or .xml file, and take the # away.\n"
+    return std::string(comment(
+               "# No family fits: name one (`servoctl drives`) or an .eds or .xml file, and take the # away.\n",
+               chinese)) +
            "# family = \"\"\n";
   auto out = fmt::format("family = {}", in_quotes(axis.family));
   if (axis.guessed)
     out += axis.others.empty()
-               ? "  # guessed by its identity: does the nameplate agree?"
-               : fmt::format("  # guessed by its identity, which fits {} as well", one_of(axis.others));
+               ? std::string(comment("  # guessed by its identity: does the nameplate agree?", chinese))
+               : fmt::format(
+                     fmt::runtime(comment("  # guessed by its identity, which fits {} as well", chinese)),
+                     one_of(axis.others));
   return out + "\n";
 }
 
-std::string axis_text(const std::string& bus, const FoundAxis& axis) {
+std::string axis_text(const std::string& bus, const FoundAxis& axis, bool chinese) {
   const bool unknown = axis.family.empty();
   const std::string mark = unknown ? "# " : "";
   auto out = fmt::format("\n{0}[axis.{1}]", mark, axis.name);
-  if (const auto told = who(axis.identity); !told.empty()) out += "  # " + told;
-  out +=
-      fmt::format("\n{0}bus = {1}\n{0}node = {2}\n{3}", mark, in_quotes(bus), axis.node, family_lines(axis));
+  if (const auto told = who(axis.identity, chinese); !told.empty()) out += "  # " + told;
+  out += fmt::format("\n{0}bus = {1}\n{0}node = {2}\n{3}", mark, in_quotes(bus), axis.node,
+                     family_lines(axis, chinese));
   if (unknown) return out;
   if (axis.identity.serial.value_or(0) != 0)
     out += fmt::format("serial = \"0x{:08X}\"\n", *axis.identity.serial);
   out +=
       axis.increments
           ? fmt::format(
-                "# The drive tells its {} increments of 6064h per motor revolution: `turn` is not needed.\n",
+                fmt::runtime(comment(
+                    "# The drive tells its {} increments of 6064h per motor revolution: `turn` is not needed.\n",
+                    chinese)),
                 *axis.increments)
-          : "# turn = 131072            # increments of 6064h per motor revolution: the drive does not tell them\n";
-  out +=
-      "# gear = \"10:1\"            # motor to output\n"
-      "# per_turn = \"20 mm\"       # what the load moves in one turn of the output\n"
-      "# limits = { speed = \"300rpm\", torque = \"80%\" }\n";
+          : std::string(comment(
+                "# turn = 131072            # increments of 6064h per motor revolution: the drive does not tell them\n",
+                chinese));
+  out += comment("# gear = \"10:1\"            # motor to output\n", chinese);
+  out += comment("# per_turn = \"20 mm\"       # what the load moves in one turn of the output\n", chinese);
+  out += "# limits = { speed = \"300rpm\", torque = \"80%\" }\n";
   if (axis.heartbeat_ms) out += fmt::format("heartbeat = \"{}ms\"\n", *axis.heartbeat_ms);
   if (!axis.pdo_file.empty()) out += fmt::format("pdos = {}\n", in_quotes(axis.pdo_file));
   if (axis.parameters.empty()) return out;
@@ -136,20 +155,22 @@ Result<FoundSettings> find_settings(show::Desk& desk, std::uint8_t node) {
 }
 
 std::string cabinet_text(const std::string& bus, const std::string& url, const std::vector<FoundAxis>& axes,
-                         bool whole) {
+                         bool whole, bool chinese) {
   std::string out;
   if (whole)
     out +=
-        "# What stands in the cabinet, and what each drive is to have. `servoctl cabinet check` reads this file\n"
-        "# without a bus, `cabinet plan` shows what differs from the drives, `cabinet apply` makes it so.\n"
-        "# Give the axes the names of your machine: `servoctl status feeder`. Values that axes share go into\n"
-        "# [group.NAME] (an axis says group = \"NAME\") or [family.NAME].\n"
+        std::string(comment(
+            "# What stands in the cabinet, and what each drive is to have. `servoctl cabinet check` reads this file\n"
+            "# without a bus, `cabinet plan` shows what differs from the drives, `cabinet apply` makes it so.\n"
+            "# Give the axes the names of your machine: `servoctl status feeder`. Values that axes share go into\n"
+            "# [group.NAME] (an axis says group = \"NAME\") or [family.NAME].\n",
+            chinese)) +
         "format = 1\n\n";
   else
     out += "\n";
   out += fmt::format("[bus.{}]\nurl = {}\n", bus, in_quotes(url));
-  if (whole) out += "# bitrate = \"500k\"\n";
-  for (const auto& axis : axes) out += axis_text(bus, axis);
+  if (whole && !session::is_ethercat(url)) out += "# bitrate = \"500k\"\n";
+  for (const auto& axis : axes) out += axis_text(bus, axis, chinese);
   return out;
 }
 

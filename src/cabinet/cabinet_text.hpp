@@ -44,6 +44,6 @@ Result<FoundSettings> find_settings(show::Desk& desk, std::uint8_t node);
 /// The text of a bus and its axes, with comments that say what is to be filled in. `whole`: with what stands
 /// at the head of a file.
 std::string cabinet_text(const std::string& bus, const std::string& url, const std::vector<FoundAxis>& axes,
-                         bool whole);
+                         bool whole, bool chinese);
 
 }  // namespace servoctl::cabinet

@@ -86,10 +86,11 @@ class Swapping {
     is_proven_ = session::judge_family(identity_, *desk_.profile, options_->apply.choice.families).kind ==
                  session::FamilyVerdict::Kind::proven;
     if (const auto own = refuse_listed(); !own) return own;
-    const bool same = axis_.serial && identity_.serial == axis_.serial;
+    is_same_ = axis_.serial.value_or(0) != 0 && identity_.serial == axis_.serial;
     desk_.tell(fmt::format("{}: a {} at node {}, serial number {}; the file says {}{}\n", axis_.name,
                            axis_.family, at_, known_serial(identity_.serial),
-                           serial_text(axis_.serial.value_or(0)), same ? ": the drive that was there" : ""));
+                           serial_text(axis_.serial.value_or(0)),
+                           is_same_ ? ": the drive that was there" : ""));
     return {};
   }
 
@@ -185,6 +186,11 @@ class Swapping {
 
   /// What a person has still to do.
   void tell_rest() {
+    if (is_same_) {
+      desk_.notices.push_back(
+          fmt::format("axis {}: this is the drive that was there: no drive was exchanged", axis_.name));
+      return;
+    }
     if (axis_.serial && identity_.serial && axis_.serial != identity_.serial)
       desk_.notices.push_back(fmt::format(
           "in {}, [axis.{}]: {}; until then `plan` and `apply` refuse the new drive",
@@ -229,6 +235,7 @@ class Swapping {
   std::uint8_t at_ = 0;
   session::Identity identity_;
   bool is_proven_ = false;
+  bool is_same_ = false;  ///< The serial number is that of the file.
   std::string moved_;
   Value settings_;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,15 @@ class Bus {
   virtual Result<void> recover(TimePoint /*deadline*/) {
     return fail(Errc::bus, "this bus does not come back by itself");
   }
+
+  /// Where the bitrate is set by who opens the bus: leaves it, and takes part again at this one with the next
+  /// recover(). Errc::usage where it is not.
+  virtual Result<void> leave_for(std::uint32_t /*bitrate*/) {
+    return fail(Errc::usage, "the bitrate of this bus is not set where it is opened");
+  }
+
+  /// What an adapter says of itself, for people; empty where there is nothing to say.
+  virtual std::string about() const { return {}; }
 
   /// When the frame that receive() gave last arrived, on the clock of now(); where the kernel stamps frames,
   /// it does not matter how late receive() was called.

@@ -30,7 +30,7 @@ Error unreachable_bitrate(const std::string& name, const LinkChange& change, con
   const auto wanted = in_kbits(change.bitrate.value_or(0));
   if (!now.bitrates.empty())
     return make_error(Errc::usage, fmt::format("{} has no bitrate of {}", name, wanted),
-                      "it has " + own_bitrates(now));
+                      fmt::format("it has {}", own_bitrates(now)));
   const auto clock =
       now.clock > 0 ? fmt::format(" from its clock of {:g} MHz", now.clock / 1e6) : std::string();
   return make_error(

@@ -1,5 +1,6 @@
 #include "can/recording.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/text.hpp"
@@ -43,13 +44,35 @@ RecordingStrays for_each_frame(std::string_view content, const TakeLogFrame& tak
   AscReader asc_reader;
   TrcReader trc_reader;
   RecordingStrays out;
+  const auto* const begin = content.data();
+  const bool has_end = content.ends_with('\n');
   std::string_view line;
   for (std::size_t number = 1; take_log_line(content, line); ++number) {
     const auto read = asc ? asc_reader.read(line) : trc ? trc_reader.read(line) : read_candump(line);
+    // Half a frame is a shorter one.
+    if (content.empty() && !has_end && read.kind != AscLine::Kind::remark) {
+      out.damage = {static_cast<std::uint64_t>(line.data() - begin), "its last line has no end"};
+      break;
+    }
     if (read.kind == AscLine::Kind::frame && !take(read.frame)) break;
     out.unsuited += read.kind == AscLine::Kind::unsuited;
     if (read.kind == AscLine::Kind::malformed) out.add_unknown(number);
   }
+  return out;
+}
+
+std::map<std::string, std::size_t> frames_of_buses(std::string_view content) {
+  std::map<std::string, std::size_t> out;
+  (void)for_each_frame(content, [&](const LogFrame& line) {
+    if (!line.frame.error) ++out[line.interface_name];
+    return true;
+  });
+  return out;
+}
+
+std::string list_of(const std::map<std::string, std::size_t>& buses) {
+  std::string out;
+  for (const auto& [name, count] : buses) servoctl::append(out, fmt::format("{} ({})", name, count));
   return out;
 }
 

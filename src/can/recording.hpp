@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,5 +37,12 @@ struct RecordingStrays {
 
 /// Calls `take` with each frame, in the order of the file, until it answers false.
 RecordingStrays for_each_frame(std::string_view content, const TakeLogFrame& take);
+
+/// The buses that have frames in it, by their names as `decode` shows them, and how many; error frames are
+/// none.
+std::map<std::string, std::size_t> frames_of_buses(std::string_view content);
+
+/// `can0 (12), can1 (7)`, for messages.
+std::string list_of(const std::map<std::string, std::size_t>& buses);
 
 }  // namespace servoctl::can

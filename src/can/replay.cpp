@@ -18,6 +18,26 @@ bool is_of_master(const Frame& frame) {
   return frame.id == 0x000 || frame.remote || (frame.id > 0x600 && frame.id <= 0x67F) || frame.id == 0x7E5;
 }
 
+/// `recording.log?channel=can1`: the file, and the bus of it; empty where none is named.
+std::pair<std::filesystem::path, std::string> file_and_channel(std::string_view place) {
+  constexpr std::string_view kChannel = "?channel=";
+  const auto at = place.rfind(kChannel);
+  if (at == std::string_view::npos) return {std::filesystem::path(place), {}};
+  return {std::filesystem::path(place.substr(0, at)), std::string(place.substr(at + kChannel.size()))};
+}
+
+/// Answers of several buses together would be of none of them.
+Result<void> check_channel(const std::string& file, std::string_view text, const std::string& channel) {
+  const auto buses = frames_of_buses(text);
+  if (channel.empty() ? buses.size() < 2 : buses.count(channel) > 0) return {};
+  if (!channel.empty())
+    return fail(Errc::usage, fmt::format("{} has no frame of {}", file, channel),
+                fmt::format("it has frames of {}", list_of(buses)));
+  return fail(
+      Errc::usage, fmt::format("{} has frames of several buses: {}", file, list_of(buses)),
+      fmt::format("name the one that is to answer: replay:{}?channel={}", file, buses.begin()->first));
+}
+
 TimePoint time_of(const LogFrame& line) { return TimePoint(line.time); }
 
 }  // namespace
@@ -55,12 +75,14 @@ void ReplayBus::skip_done() {
   while (next_ < lines_.size() && done_[next_]) ++next_;
 }
 
-Result<std::unique_ptr<Bus>> open_replay(const std::filesystem::path& file) {
+Result<std::unique_ptr<Bus>> open_replay(std::string_view place) {
+  const auto [file, channel] = file_and_channel(place);
   const auto text = read_file(file, kMaxFile);
   if (!text) return fail(text.error());
+  if (const auto one = check_channel(file.string(), *text, channel); !one) return fail(one.error());
   std::vector<LogFrame> lines;
-  const auto strays = for_each_frame(*text, [&](const LogFrame& line) {
-    lines.push_back(line);
+  const auto strays = for_each_frame(*text, [&, &only = channel](const LogFrame& line) {
+    if (only.empty() || line.interface_name == only) lines.push_back(line);
     return true;
   });
   if (strays.damage)

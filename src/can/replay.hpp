@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -12,14 +11,15 @@
 
 namespace servoctl::can {
 
-/// A bus that answers as it did when `file` was recorded; any recording that for_each_frame() reads. Time is
-/// that of the recording: nobody waits. Errc::file when the file cannot be read, is damaged or holds no
-/// frame.
+/// A bus that answers as it did when the file was recorded; any recording that for_each_frame() reads.
+/// `place` is the file, and behind `?channel=` the bus that answers where the file has several. Time is that
+/// of the recording: nobody waits. Errc::file when the file cannot be read, is damaged or holds no frame;
+/// Errc::usage where it has frames of several buses and none is named, or none of that one.
 ///
 /// Frames that only masters send (NMT, SDO requests, remote frames, LSS requests) are taken as sent by us:
 /// each frame sent must be among them, and what follows them in the recording is received after they were
 /// sent. A frame that the recording does not hold is Errc::bus.
-Result<std::unique_ptr<Bus>> open_replay(const std::filesystem::path& file);
+Result<std::unique_ptr<Bus>> open_replay(std::string_view place);
 
 /// See open_replay().
 class ReplayBus final : public Bus {

@@ -20,8 +20,9 @@ constexpr Duration kSlcanSendLimit = std::chrono::seconds(1);
 constexpr Duration kFrameAnswer = milliseconds(300);
 /// Between two offers of a frame that was refused.
 constexpr Duration kOfferPause = milliseconds(2);
-/// For the answer to F; a frame waits for it.
-constexpr Duration kFlagsPatience = milliseconds(100);
+/// Of firmware whose stamps are whole 16-bit numbers.
+constexpr Duration kLongStampPeriod = milliseconds(65'536);
+constexpr std::uint16_t kLastShortStamp = 0xEA5F;
 /// Frames that wait here at most.
 constexpr std::size_t kMostReceived = 1U << 20U;
 
@@ -49,7 +50,7 @@ Result<void> SlcanBus::send(const Frame& frame) {
                 fmt::format("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
   const auto line = slcan_line(frame);
   const auto limit = now() + kSlcanSendLimit;
-  wait_for_flags();
+  await_watch();
   for (;;) {
     answer_ = Answer::none;
     version_came_ = false;
@@ -95,18 +96,13 @@ Result<SlcanBus::Answer> SlcanBus::answer_to_frame(TimePoint limit) {
   return Answer::none;
 }
 
-/// Its answer would be taken for that of the frame.
-void SlcanBus::wait_for_flags() {
-  while (flags_asked_ && port_ && now() < *flags_asked_ + kFlagsPatience)
-    if (wait_for(port_->get(), POLLIN, *flags_asked_ + kFlagsPatience) == Wake::ready && !fill()) return;
-  miss_flags();
-}
-
-void SlcanBus::miss_flags() {
-  constexpr int kMostMissed = 3;
-  if (!flags_asked_) return;
-  flags_asked_.reset();
-  if (++flags_missed_ == kMostMissed) knows_flags_ = false;
+/// An answer to what it is asked regularly would be taken for that to the frame.
+void SlcanBus::await_watch() {
+  const auto limit = watch_.awaited();
+  if (!limit) return;
+  while (port_ && watch_.awaited() && now() < *limit)
+    if (wait_for(port_->get(), POLLIN, *limit) == Wake::ready && !fill()) return;
+  if (watch_.awaited()) watch_.give_up();
 }
 
 Result<SlcanBus::Answer> SlcanBus::wait_for_answer(TimePoint limit) {
@@ -131,9 +127,14 @@ Result<void> SlcanBus::fill() {
   std::string bytes;
   const auto got = port_->read(bytes);
   const auto time = now();
+  if (!bytes.empty()) watch_.on_bytes(time);
   reader_.put(bytes);
   while (const auto line = reader_.take()) on_line(*line, time);
   if (!got) return lose(got.error());
+  if (watch_.state() == SlcanWatch::State::restarted)
+    return lose(
+        make_error(Errc::bus, fmt::format("the adapter at {} has started anew, and is closed", place_.device),
+                   "is its plug loose, or its supply too weak? It is opened again by the next command"));
   return {};
 }
 
@@ -147,27 +148,22 @@ void SlcanBus::on_line(const SlcanLine& line, TimePoint time) {
       return on_answer(line.kind == SlcanLine::Kind::refused ? Answer::refused : Answer::acknowledged,
                        !line.text.empty());
     case SlcanLine::Kind::flags:
-      flags_asked_.reset();
-      flags_missed_ = 0;
-      // The first ones are of a time before this.
-      if (!std::exchange(flags_are_old_, false))
+      if (watch_.on_flags(time))
         for (const auto& report : slcan_reports(line.flags)) take(report, time);
       return;
-    case SlcanLine::Kind::frame:
-      return take(line.frame, line.stamp ? stamps_.time(milliseconds(*line.stamp), time) : time);
+    case SlcanLine::Kind::frame: return take(line.frame, line.stamp ? stamped(*line.stamp, time) : time);
     case SlcanLine::Kind::report: return take(line.frame, time);
     case SlcanLine::Kind::damaged: ++damaged_; return;
-    case SlcanLine::Kind::text: version_came_ = version_came_ || line.text == version_; return;
+    case SlcanLine::Kind::text:
+      if (line.text != version_) return;
+      version_came_ = true;
+      return watch_.on_version();
   }
 }
 
 /// To F from an adapter that does not know it; or to the frame, which alone is acknowledged by a letter.
 void SlcanBus::on_answer(Answer answer, bool has_letter) {
-  if (flags_asked_ && !has_letter) {
-    flags_asked_.reset();
-    knows_flags_ = false;
-    return;
-  }
+  if (!has_letter && watch_.on_answer(now())) return;
   answer_ = answer;
   if (answer == Answer::refused && !is_offering_) ++refused_late_;
   if (acknowledges_frames_ || answer != Answer::acknowledged) return;
@@ -177,14 +173,18 @@ void SlcanBus::on_answer(Answer answer, bool has_letter) {
   ++unanswered_;
 }
 
-Result<void> SlcanBus::ask_for_flags() {
-  flags_due_ = kNever;
-  miss_flags();
-  if (!knows_flags_) return {};
-  flags_due_ = now() + kFlagsEvery;
-  const auto sent = write("F\r", now() + kFlagsPatience);
-  if (sent) flags_asked_ = now();
-  return sent;
+TimePoint SlcanBus::stamped(std::uint16_t stamp, TimePoint time) {
+  if (stamp > kLastShortStamp && !std::exchange(long_stamps_, true)) stamps_ = ForeignClock(kLongStampPeriod);
+  return stamps_.time(milliseconds(stamp), time);
+}
+
+Result<void> SlcanBus::ask_again() {
+  const auto question = watch_.take_question(now());
+  if (watch_.state() == SlcanWatch::State::silent)
+    return lose(make_error(Errc::bus,
+                           fmt::format("the adapter at {} does not answer any more", place_.device),
+                           "unplug it and plug it in again"));
+  return question.empty() ? Result<void>() : write(question, now() + SlcanWatch::kPatience);
 }
 
 Result<std::optional<Frame>> SlcanBus::receive(TimePoint deadline) {
@@ -196,9 +196,9 @@ Result<std::optional<Frame>> SlcanBus::receive(TimePoint deadline) {
       return std::optional(frame);
     }
     if (!port_) return fail(lost_.value_or(make_error(Errc::bug, "an adapter that is not open")));
-    if (now() >= flags_due_)
-      if (const auto asked = ask_for_flags(); !asked) return fail(asked.error());
-    const auto woken = wait_or_signal(port_->get(), POLLIN, std::min(deadline, flags_due_));
+    if (now() >= watch_.due())
+      if (const auto asked = ask_again(); !asked) return fail(asked.error());
+    const auto woken = wait_or_signal(port_->get(), POLLIN, std::min(deadline, watch_.due()));
     if (woken == Wake::interrupted) return std::optional<Frame>();
     if (woken == Wake::elapsed) {
       if (now() >= deadline) return std::optional<Frame>();
@@ -228,7 +228,7 @@ std::vector<std::string> SlcanBus::take_notices() {
 
 TimePoint SlcanBus::next_event() const {
   if (!inbox_.empty()) return TimePoint::min();
-  return port_ ? flags_due_ : kNever;
+  return port_ ? watch_.due() : kNever;
 }
 
 }  // namespace servoctl::can

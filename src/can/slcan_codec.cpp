@@ -18,8 +18,6 @@ using LineKind = SlcanLine::Kind;
 constexpr std::size_t kMostLine = 200;
 /// Lines that wait here at most; whoever reads takes them as they come.
 constexpr std::size_t kMostLines = 1U << 20U;
-/// Stamps count to a minute (CAN232 manual: 0x0000..0xEA5F).
-constexpr std::uint64_t kLastStamp = 0xEA5F;
 constexpr std::size_t kStampDigits = 4;
 
 constexpr char kReturn = '\r';
@@ -48,7 +46,7 @@ bool read_rest(std::string_view rest, SlcanLine& out) {
   }
   if (rest.size() == data) return true;
   const auto stamp = parse_digits(rest.substr(data), 16);
-  if (!stamp || *stamp > kLastStamp) return false;
+  if (!stamp) return false;
   out.stamp = static_cast<std::uint16_t>(*stamp);
   return true;
 }

@@ -26,10 +26,11 @@ struct SlcanLine {
     damaged,       ///< Begins like a frame and does not go on like one; or has no end.
   };
   Kind kind = Kind::text;
-  Frame frame = {};                         ///< Of `frame`, and an error frame of `report`.
-  std::optional<std::uint16_t> stamp = {};  ///< Milliseconds, 0..59999, where the adapter stamps frames.
-  std::uint8_t flags = 0;                   ///< Of `flags`.
-  std::string text = {};                    ///< The line as it came.
+  Frame frame = {};  ///< Of `frame`, and an error frame of `report`.
+  /// Milliseconds, where the adapter stamps frames; they count to a minute, of some firmware to 65,536.
+  std::optional<std::uint16_t> stamp = {};
+  std::uint8_t flags = 0;  ///< Of `flags`.
+  std::string text = {};   ///< The line as it came.
 };
 
 /// Makes lines of bytes, however they were cut. Line feeds behind carriage returns are left out, and a line

@@ -29,7 +29,7 @@ void SlcanBus::close() {
   if (!port_) return;
   const auto limit = now() + kClosePatience;
   answer_ = Answer::none;
-  flags_asked_.reset();
+  watch_ = SlcanWatch();
   version_came_ = false;
   if (port_->write("C\r", limit) && acknowledges_)
     while (answer_ == Answer::none && wait_for(port_->get(), POLLIN, limit) == Wake::ready && fill()) {
@@ -43,9 +43,10 @@ Result<void> SlcanBus::open(TimePoint limit, bool ends_by_signal) {
   if (!port) return fail(port.error());
   port_.emplace(std::move(*port));
   reader_.reset();
-  stamps_.reset();
+  stamps_ = ForeignClock(kStampPeriod);
+  long_stamps_ = false;
   inbox_.clear();
-  flags_asked_.reset();
+  watch_ = SlcanWatch();
   acknowledges_frames_ = true;
   frame_was_acknowledged_ = false;
   if (auto done = hand_shake(limit, ends_by_signal); !done) {
@@ -54,10 +55,7 @@ Result<void> SlcanBus::open(TimePoint limit, bool ends_by_signal) {
     return done;
   }
   lost_.reset();
-  knows_flags_ = acknowledges_;
-  flags_due_ = knows_flags_ ? now() : kNever;
-  flags_are_old_ = true;
-  flags_missed_ = 0;
+  watch_ = SlcanWatch(acknowledges_, !version_.empty(), now());
   return {};
 }
 
@@ -86,6 +84,7 @@ Result<void> SlcanBus::hand_shake(TimePoint limit, bool ends_by_signal) {
   }
   acknowledges_ = opening.acknowledges();
   version_ = opening.version();
+  refuses_to_listen_ = opening.state() == SlcanOpening::State::refused_listening;
   return judge(opening);
 }
 
@@ -93,9 +92,18 @@ Result<void> SlcanBus::judge(const SlcanOpening& opening) const {
   switch (opening.state()) {
     case SlcanOpening::State::open: return {};
     case SlcanOpening::State::refused_bitrate:
-      return fail(Errc::bus,
+      return fail(Errc::usage,
                   fmt::format("the adapter at {} refuses {} kbit/s", place_.device, place_.bitrate / 1000),
                   "its manual lists the bitrates that it has");
+    case SlcanOpening::State::refused_listening:
+      return fail(Errc::usage,
+                  opening.acknowledges()
+                      ? fmt::format("the adapter at {} cannot listen without acknowledging", place_.device)
+                      : fmt::format("the adapter at {} answers to no command: whether it would only listen, "
+                                    "nobody knows",
+                                    place_.device),
+                  "only listen-only leaves a bus undisturbed at a wrong bitrate: use another adapter, or ask "
+                  "what the bitrate is");
     case SlcanOpening::State::refused_opening:
       return fail(Errc::bus, fmt::format("the adapter at {} does not open its bus", place_.device),
                   "unplug it and plug it in again");
@@ -114,9 +122,31 @@ Result<void> SlcanBus::recover(TimePoint deadline) {
   for (;;) {
     // An adapter that starts anew, or answers late, has all rounds of the opening, as at first.
     auto opened = open(std::max(deadline, now() + SlcanOpening::kLongest), false);
-    if (opened || now() >= deadline) return opened;
+    if (opened || opened.error().code == Errc::usage || now() >= deadline) return opened;
     nap(std::min<Duration>(kPortPause, deadline - now()));
   }
+}
+
+Result<void> SlcanBus::leave_for(std::uint32_t bitrate) {
+  if (!slcan_bitrate_digit(bitrate))
+    return fail(Errc::usage, fmt::format("{} bit/s is no bitrate that such an adapter has", bitrate));
+  close();
+  place_.bitrate = bitrate;
+  lost_ = make_error(Errc::bus, fmt::format("the adapter at {} was left", place_.device));
+  return {};
+}
+
+std::string SlcanBus::about() const {
+  if (!port_) return {};
+  const auto version = version_.empty() ? std::string("?") : version_;
+  if (!acknowledges_ || !acknowledges_frames_)
+    return fmt::format(
+        "version {}; it acknowledges no frame, so that nobody knows which were sent, and tells nothing of its controller",
+        version);
+  if (watch_.has_flags())
+    return fmt::format(
+        "version {}; its flags tell lost frames, warning, error-passive and errors on the wire", version);
+  return fmt::format("version {}; it acknowledges frames, and tells nothing of its controller", version);
 }
 
 Result<std::unique_ptr<Bus>> open_slcan(std::string_view place, SlcanOpening::Mode mode) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
+#include <deque>
 #include <string>
 
 #include "base/time.hpp"
@@ -17,6 +17,10 @@ namespace servoctl::can {
 /// firmware sends its last frame again for one. V comes before what matters because its answer is a text:
 /// when it is there, every acknowledge before it is there too, however late. Firmware that acknowledges
 /// nothing is known by its version, twice the same. Each round waits twice as long as the one before.
+///
+/// Answers come in the order of the words, so what is answered late is counted: no word is sent whose answer
+/// matters while an older one may still come. What echoes is no adapter; nor is what talks without being
+/// asked and acknowledges nothing.
 class SlcanOpening {
  public:
   enum class Mode : std::uint8_t { normal, listen_only };
@@ -24,18 +28,20 @@ class SlcanOpening {
     closing,          ///< C
     asking,           ///< V
     asking_again,     ///< V, where nothing was acknowledged.
+    settling,         ///< Older words may still be answered.
     setting_bitrate,  ///< Sn
     opening,          ///< O or L
     open,
     no_answer,  ///< Nothing that an adapter would say.
     refused_bitrate,
     refused_opening,
+    refused_listening,  ///< L: it has none, or acknowledges nothing, so that nobody knows.
   };
   static constexpr int kRounds = 3;
   /// For one answer in the first round.
   static constexpr Duration kPatience = std::chrono::milliseconds(300);
   /// All rounds, whatever the adapter does.
-  static constexpr Duration kLongest = std::chrono::seconds(5);
+  static constexpr Duration kLongest = std::chrono::seconds(8);
   /// Between two commands to firmware that acknowledges nothing.
   static constexpr Duration kPause = std::chrono::milliseconds(10);
 
@@ -58,7 +64,16 @@ class SlcanOpening {
   bool heard_something() const { return heard_something_; }
 
  private:
+  struct Word {
+    char first;
+    TimePoint sent;
+  };
+
   void enter(State state, TimePoint now);
+  Duration patience() const;
+  void on_answer(bool is_text, TimePoint now);
+  void set_bitrate_when_settled(TimePoint now);
+  void on_echo(TimePoint now);
   void on_acknowledge(TimePoint now);
   void on_refusal(TimePoint now);
   void on_text(const std::string& text, TimePoint now);
@@ -71,8 +86,13 @@ class SlcanOpening {
   std::string to_send_;
   std::string version_;
   int round_ = 0;
+  std::deque<Word> unanswered_;  ///< Of all rounds, the oldest first.
+  Duration latency_{};           ///< The longest that a word waited for its answer.
+  TimePoint entered_{};
   bool acknowledges_ = false;
   bool heard_something_ = false;
+  bool talks_ = false;   ///< Text came in this round that nothing had asked for.
+  bool echoes_ = false;  ///< In this round.
 };
 
 }  // namespace servoctl::can

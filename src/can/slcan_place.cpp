@@ -32,6 +32,20 @@ tl::unexpected<Error> no_slcan_place(std::string_view text, std::string_view why
 
 }  // namespace
 
+std::string slcan_url(const SlcanPlace& place) {
+  const auto rate = place.bitrate >= 1'000'000 ? fmt::format("{}M", place.bitrate / 1'000'000)
+                                               : fmt::format("{}k", place.bitrate / 1'000);
+  auto out = fmt::format("slcan:{}@{}", place.device, rate);
+  if (place.baud != SlcanPlace().baud) out += fmt::format(",{}", place.baud);
+  return out;
+}
+
+Result<SlcanPlace> parse_slcan_port(std::string_view text) {
+  if (text.find('@') == std::string_view::npos && !text.empty())
+    return SlcanPlace{.device = std::string(text)};
+  return parse_slcan_place(text);
+}
+
 Result<SlcanPlace> parse_slcan_place(std::string_view text) {
   const auto at = text.rfind('@');
   if (at == std::string_view::npos) return no_slcan_place(text, "the bitrate of the bus is missing");

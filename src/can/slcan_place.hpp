@@ -16,6 +16,13 @@ struct SlcanPlace {
   bool operator==(const SlcanPlace&) const = default;
 };
 
+/// The whole name of the bus: `slcan:/dev/ttyUSB0@500k,57600`, without a baud rate that is the usual one.
+std::string slcan_url(const SlcanPlace& place);
+
+/// Reads `/dev/ttyACM0@1M`, and the port alone for what sets the bitrate itself: `/dev/ttyACM0`,
+/// `/dev/ttyUSB0@500k,57600`. Errors as parse_slcan_place().
+Result<SlcanPlace> parse_slcan_port(std::string_view text);
+
 /// Reads `/dev/ttyACM0@1M`, `/dev/ttyUSB0@500k,57600`. Errc::usage with the form, and with the bitrates that
 /// there are.
 Result<SlcanPlace> parse_slcan_place(std::string_view text);

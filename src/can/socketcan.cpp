@@ -146,7 +146,8 @@ Result<std::optional<Frame>> SocketCanBus::receive(TimePoint deadline) {
     if (woken == Wake::interrupted && inbox_.empty() && !failed_) return std::optional<Frame>();
   }
   while (inbox_.empty()) {
-    if (failed_) return fail(*std::exchange(failed_, std::nullopt));
+    // The kernel tells it once; it stays so until recover().
+    if (failed_) return fail(*failed_);
     if (const auto woken = wait_for_frames(deadline); woken != Wake::ready) return std::optional<Frame>();
   }
   if (inbox_.size() >= kBatch && given_ >= kBatch) drain();

@@ -71,7 +71,8 @@ tl::unexpected<Error> interface_queue_full(const std::string& name) {
   return fail(
       Errc::bus, fmt::format("the transmit queue of {} remains full", name),
       fmt::format(
-          "is another node on the bus and the bitrate right? `doctor {0}` looks; `bus up {0} --txqueuelen 1000`",
+          "nobody acknowledges its frames, or the queue is too short: is another node on the bus, and the bitrate right? "
+          "`doctor {0}` looks; `bus up {0} --txqueuelen 1000` makes it longer",
           name));
 }
 

@@ -33,6 +33,7 @@ bool fits_a_frame(const Frame& frame) {
 }  // namespace
 
 tl::unexpected<Error> SocketcandBus::lose(Error error) {
+  if (connection_) connection_->abandon();
   connection_.reset();
   lost_ = error;
   return fail(std::move(error));

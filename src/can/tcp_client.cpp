@@ -4,6 +4,8 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
+#include <signal.h>
+#include <sys/eventfd.h>
 #include <sys/socket.h>
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 #include <cerrno>
 #include <memory>
 #include <optional>
+#include <thread>
 
 namespace servoctl::can {
 namespace {
@@ -23,18 +26,78 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
-Result<Addresses> addresses_of(const TcpServer& server) {
+Wake await_in_spite_of_signals(int descriptor, TimePoint limit) {
+  for (;;)
+    if (const auto woken = wait_for(descriptor, POLLIN, limit); woken != Wake::interrupted) return woken;
+}
+
+/// A thread that is begun meanwhile takes no signals: they are for who waits.
+class SignalsBlocked {
+ public:
+  SignalsBlocked() {
+    sigset_t all;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_SETMASK, &all, &before_);
+  }
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+  ~SignalsBlocked() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_{};
+};
+
+/// A name that is looked up; a thread of its own, because nobody can end the system's search.
+struct Lookup {
+  TcpServer server;
+  Addresses list;
+  int error = 0;
+  int system_error = 0;
+  Descriptor done;
+};
+
+void look_up(Lookup& to, int flags) {
   addrinfo wanted{};
   wanted.ai_family = AF_UNSPEC;
   wanted.ai_socktype = SOCK_STREAM;
-  wanted.ai_flags = AI_NUMERICSERV;
+  wanted.ai_flags = AI_NUMERICSERV | flags;
   addrinfo* list = nullptr;
-  const int error = ::getaddrinfo(server.host.c_str(), std::to_string(server.port).c_str(), &wanted, &list);
-  if (error == 0) return Addresses(list);
+  to.error = ::getaddrinfo(to.server.host.c_str(), std::to_string(to.server.port).c_str(), &wanted, &list);
+  to.system_error = errno;
+  if (to.error == 0) to.list.reset(list);
+}
+
+tl::unexpected<Error> host_not_found(const Lookup& lookup) {
   return fail(Errc::bus,
-              fmt::format("the host {} is not found: {}", server.host,
-                          error == EAI_SYSTEM ? system_text(errno) : std::string(::gai_strerror(error))),
+              fmt::format("the host {} is not found: {}", lookup.server.host,
+                          lookup.error == EAI_SYSTEM ? system_text(lookup.system_error)
+                                                     : std::string(::gai_strerror(lookup.error))),
               "check its name, or write its address");
+}
+
+Result<Addresses> addresses_of(const TcpServer& server, TimePoint limit, bool ends_by_signal) {
+  const auto lookup = std::make_shared<Lookup>();
+  lookup->server = server;
+  look_up(*lookup, AI_NUMERICHOST);
+  if (lookup->error == 0) return std::move(lookup->list);
+  lookup->done = Descriptor(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
+  try {
+    const SignalsBlocked none;
+    std::thread([lookup] {
+      look_up(*lookup, 0);
+      (void)::eventfd_write(lookup->done.get(), 1);
+    }).detach();
+  } catch (...) {
+    return fail(Errc::bus, fmt::format("the host {} cannot be looked up", server.host), "write its address");
+  }
+  const auto woken = ends_by_signal ? wait_or_signal(lookup->done.get(), POLLIN, limit)
+                                    : await_in_spite_of_signals(lookup->done.get(), limit);
+  if (woken == Wake::interrupted) return fail(Errc::interrupted, "interrupted");
+  if (woken == Wake::elapsed)
+    return fail(Errc::bus, fmt::format("the host {} is not found in time", server.host),
+                "does the name server answer? `getent hosts NAME` asks it; or write the host's address");
+  if (lookup->error != 0) return host_not_found(*lookup);
+  return std::move(lookup->list);
 }
 
 void set_tcp_option(int socket, int level, int option, int value) {
@@ -91,7 +154,7 @@ tl::unexpected<Error> not_connected(const TcpServer& server, int error) {
 }  // namespace
 
 Result<TcpClient> TcpClient::connect(const TcpServer& server, TimePoint limit, bool ends_by_signal) {
-  const auto addresses = addresses_of(server);
+  const auto addresses = addresses_of(server, limit, ends_by_signal);
   if (!addresses) return fail(addresses.error());
   int error = EADDRNOTAVAIL;
   for (const auto* at = addresses->get(); at != nullptr; at = at->ai_next) {
@@ -123,6 +186,11 @@ Result<void> TcpClient::send(std::string_view text, TimePoint limit) {
     wait_for(socket_.get(), POLLOUT, limit);
   }
   return {};
+}
+
+void TcpClient::abandon() {
+  const linger none{1, 0};
+  (void)::setsockopt(socket_.get(), SOL_SOCKET, SO_LINGER, &none, sizeof none);
 }
 
 Result<void> TcpClient::receive(std::string& out) {

@@ -23,14 +23,15 @@ struct TcpServer {
 /// acknowledges nothing for five seconds.
 class TcpClient {
  public:
-  /// Errc::bus where there is no such host, nothing listens there, or nothing answers until `limit`;
-  /// Errc::interrupted by a signal where `ends_by_signal`. The name of a host is looked up first, which takes
-  /// as long as the system takes for it.
+  /// Errc::bus where there is no such host, its name is not found in time, nothing listens there, or nothing
+  /// answers until `limit`; Errc::interrupted by a signal where `ends_by_signal`.
   static Result<TcpClient> connect(const TcpServer& server, TimePoint limit, bool ends_by_signal);
 
   int get() const { return socket_.get(); }
   /// All of the text; waits for room until `limit`. Errc::bus when the connection is lost, or has no room.
   Result<void> send(std::string_view text, TimePoint limit);
+  /// Closed without what was not delivered yet: the connection is lost, and it would come late.
+  void abandon();
   /// Adds what is there. Errc::bus when the connection is lost, or was closed.
   Result<void> receive(std::string& out);
 

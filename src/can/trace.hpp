@@ -57,6 +57,8 @@ class TraceBus final : public Bus {
   Result<void> send(const Frame& frame) override;
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
   Result<void> recover(TimePoint deadline) override { return inner_->recover(deadline); }
+  Result<void> leave_for(std::uint32_t bitrate) override { return inner_->leave_for(bitrate); }
+  std::string about() const override { return inner_->about(); }
   TimePoint arrived() const override { return inner_->arrived(); }
   void gather(Duration delay) override { inner_->gather(delay); }
   int poll_fd() const override { return inner_->poll_fd(); }

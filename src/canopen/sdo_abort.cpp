@@ -19,7 +19,7 @@ constexpr std::string_view kCheckType =
     "check the object's type and size: `objects` shows what the dictionary says";
 constexpr std::string_view kCheckName = "not in this firmware, or the dictionary in use is for another drive";
 constexpr std::string_view kCheckRange =
-    "`param explain` or `objects` shows the limits; other settings may narrow them";
+    "`objects` with its index shows the limits; other settings may narrow them";
 constexpr std::string_view kCheckState =
     "the drive accepts this only in another state: disable it or go to pre-operational, then try again";
 

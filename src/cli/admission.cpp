@@ -1,6 +1,11 @@
 #include "cli/admission.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+
+#include "base/object_address.hpp"
+#include "base/text.hpp"
+#include "command/registry.hpp"
 
 namespace servoctl::cli {
 
@@ -24,8 +29,28 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
 
 Result<void> check_words(const command::Command& command, command::Context& context,
                          const command::Arguments& arguments) {
-  if (command.check == nullptr || command.family != command::FamilyCheck::always) return {};
+  const bool early =
+      command.family == command::FamilyCheck::always || command.effect == command::Effect::links;
+  if (command.check == nullptr || !early) return {};
   return command.check(context, arguments);
+}
+
+std::vector<std::string> told_of_words(const command::Command& command, const command::Arguments& arguments) {
+  std::vector<std::string> out;
+  for (const auto& parameter : command.parameters) {
+    using command::Kind;
+    if (parameter.kind != Kind::object && parameter.kind != Kind::parameter && parameter.kind != Kind::topic)
+      continue;
+    for (const auto& word : arguments.all(parameter.name)) {
+      const auto name = word.substr(0, word.find_first_of("=/"));
+      const auto sub = doubtful_sub(name);
+      if (!sub) continue;
+      auto told = fmt::format("{}: the sub-index is read as hexadecimal: {}h, decimal {}", name, *sub,
+                              parse_object_address(name)->sub);
+      if (std::find(out.begin(), out.end(), told) == out.end()) out.push_back(std::move(told));
+    }
+  }
+  return out;
 }
 
 Result<void> check_network(const command::Command& command, session::Session& session) {
@@ -55,6 +80,18 @@ Result<void> admit(const command::Command& command, const command::Arguments& ar
   return {};
 }
 
+namespace {
+
+std::string works_on_registers() {
+  std::string out;
+  for (const auto* command : command::registry())
+    if (command->on_registers && includes(command->needs, Needs::bus))
+      append(out, fmt::format("`{}`", command->path), ", ");
+  return out;
+}
+
+}  // namespace
+
 Result<void> check_registers(const command::Command& command, session::Session& session,
                              const drive::Profile* profile, bool chinese) {
   if (session.modbus() == nullptr) return {};
@@ -66,8 +103,7 @@ Result<void> check_registers(const command::Command& command, session::Session& 
       fmt::format("'{}' does not work over Modbus, which has parameters and readings alone", command.path);
   // What moves a drive names it.
   if (command.effect < Effect::moves || !includes(command.needs, Needs::node))
-    return fail(Errc::usage, std::move(what),
-                "what works there: read, write, param get, param set, watch, backup, restore, fault show");
+    return fail(Errc::usage, std::move(what), fmt::format("what works there: {}", works_on_registers()));
   const auto* rules = profile == nullptr ? nullptr : &profile->rules.modbus;
   if (rules == nullptr || rules->motion.empty())
     return fail(Errc::usage, std::move(what), "motion needs the drive's CAN or EtherCAT port");
@@ -80,6 +116,14 @@ Error no_node(const command::Command& command) {
   return fail(Errc::usage, fmt::format("'{}' needs a node", command.path),
               "add -n 1 (or a list, or all); `scan` shows who is there")
       .value();
+}
+
+bool names_objects(const command::Command& command, const command::Arguments& arguments) {
+  const auto is_name = [](const std::string& word) { return !parse_object_address(word); };
+  return std::any_of(command.parameters.begin(), command.parameters.end(), [&](const auto& parameter) {
+    const auto words = arguments.all(parameter.name);
+    return parameter.kind == command::Kind::object && std::any_of(words.begin(), words.end(), is_name);
+  });
 }
 
 }  // namespace servoctl::cli

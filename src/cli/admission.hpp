@@ -13,6 +13,9 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
 /// runs: told before anything is opened. `context` has no family yet.
 Result<void> check_words(const command::Command& command, command::Context& context,
                          const command::Arguments& arguments);
+/// What is told once of a line: which words were taken for something that they may not have been meant as. A
+/// sub-index of digits alone is hexadecimal, as everywhere.
+std::vector<std::string> told_of_words(const command::Command& command, const command::Arguments& arguments);
 /// Whether the command can be run on this network: one that speaks in frames needs CAN. Errc::usage.
 Result<void> check_network(const command::Command& command, session::Session& session);
 /// The same, and whether it may give drives power there, if it does so (Errc::refused).
@@ -25,5 +28,8 @@ Result<void> check_registers(const command::Command& command, session::Session& 
                              const drive::Profile* profile, bool chinese);
 /// The command was given no node.
 Error no_node(const command::Command& command);
+
+/// Whether a word stands for objects that only a dictionary knows: a name, or a pattern.
+bool names_objects(const command::Command& command, const command::Arguments& arguments);
 
 }  // namespace servoctl::cli

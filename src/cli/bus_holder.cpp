@@ -2,19 +2,12 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <map>
-#include <set>
 #include <utility>
 
 #include "base/printable.hpp"
-#include "base/signal_wait.hpp"
 #include "base/text.hpp"
-#include "can/descriptor.hpp"
 #include "can/socketcan.hpp"
-#include "motion/left_energised.hpp"
-#include "motion/power.hpp"
 #include "session/can_network.hpp"
-#include "session/link_wait.hpp"
 #include "session/open_network.hpp"
 #include "session/open_port.hpp"
 #include "session/serve_registers.hpp"
@@ -24,9 +17,30 @@
 namespace servoctl::cli {
 namespace {
 
-/// Between two tries to open a bus that is lost, and two lines about it.
-constexpr Duration kReconnectPause = std::chrono::milliseconds(10);
-constexpr Duration kTelling = std::chrono::seconds(1);
+/// The port that a URL names, without what is said of it: `slcan:/dev/ttyACM0` of `slcan:/dev/ttyACM0@1M`.
+std::string_view port_of(std::string_view url) { return url.substr(0, url.find_first_of("@?")); }
+
+/// Adapters and hosts are asked, and waited for; an interface of the kernel is there or not.
+bool opens_at_once(const std::string& url) {
+  return url.find(':') == std::string::npos || url.starts_with("sim:") || url.starts_with("local:");
+}
+
+/// Whether the bus is that of a serial adapter: `slcan:/dev/ttyACM0@500k` of `slcan:/dev/ttyACM0`.
+bool is_over(std::string_view url, std::string_view adapter) {
+  return adapter.starts_with("slcan:") && url.starts_with(adapter) &&
+         url.substr(adapter.size()).starts_with('@');
+}
+
+/// What the bus is, and at which bitrate where that is known here.
+std::string kind_text(session::Session& session) {
+  if (session.ethercat() != nullptr) return "CANopen over EtherCAT";
+  if (session.modbus() != nullptr) return "Modbus";
+  if (session.gateway() != nullptr) return "a gateway of CiA 309-3";
+  const auto bitrate = session::bitrate_of(session.url());
+  if (!bitrate) return "CAN";
+  return session::link_of(session.url()) ? fmt::format("CAN, {} bit/s by the kernel", *bitrate)
+                                         : fmt::format("CAN, {} bit/s by its URL", *bitrate);
+}
 
 }  // namespace
 
@@ -35,6 +49,14 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
     return fail(Errc::usage, "which bus?", bus_hint(can::can_interfaces(), session::ethercat_links()));
   const auto url = session::canonical_url(settings.bus);
   const bool traces_anew = bus_options_.trace != settings.trace;
+  const bool is_open = open_.count(url) > 0 && !traces_anew;
+  // A bus that cannot be opened leaves all as it is: a word that was mistyped ends no SYNC. But nobody serves
+  // the others while one is waited for: where that matters they are let go first.
+  const bool has_time = opens_at_once(url) || !(sends_regularly() || holds_drives());
+  const bool beside =
+      !is_open && settings.trace.empty() && !traces_anew && !holds_port(settings.bus) && has_time;
+  if (beside)
+    if (const auto done = connect(settings.bus); !done) return fail(done.error());
   for (auto* session : sessions()) {
     const bool same = session::canonical_url(session->url()) == url;
     if (!traces_anew && (same || settings.of_cabinet)) continue;
@@ -53,17 +75,43 @@ Result<session::Session*> BusHolder::open(const Settings& settings) {
     return fail(done.error());
   session_->options().timeout = settings.timeout;
   session_->options().retries = settings.retries;
+  if (!is_open && console_->is_verbose()) tell_opened();
   return session_;
 }
 
+bool BusHolder::holds_port(std::string_view url) const {
+  return std::any_of(open_.begin(), open_.end(),
+                     [&](const auto& one) { return port_of(one.second->url()) == port_of(url); });
+}
+
 std::vector<std::uint8_t> BusHolder::energised_on(std::string_view url) const {
-  const auto key = session::canonical_url(url);
+  const auto wanted = session::canonical_url(url);
   std::vector<std::uint8_t> out;
-  if (const auto found = open_.find(key); found != open_.end())
-    out.assign(found->second->energised().nodes().begin(), found->second->energised().nodes().end());
-  if (const auto left = left_energised_.find(key); left != left_energised_.end())
-    out.insert(out.end(), left->second.nodes().begin(), left->second.nodes().end());
+  const auto add = [&](const std::string& key, const session::EnergisedNodes& energised) {
+    if (key == wanted || is_over(key, wanted))
+      out.insert(out.end(), energised.nodes().begin(), energised.nodes().end());
+  };
+  for (const auto& [key, session] : open_) add(key, session->energised());
+  for (const auto& [key, energised] : left_energised_) add(key, energised);
   return out;
+}
+
+bool BusHolder::has_adapter(std::string_view adapter) const {
+  return std::any_of(open_.begin(), open_.end(),
+                     [&](const auto& bus) { return is_over(bus.first, adapter); });
+}
+
+Result<void> BusHolder::release_adapter(std::string_view adapter) {
+  if (const auto nodes = energised_on(adapter); !nodes.empty())
+    return fail(Errc::refused,
+                fmt::format("{} stays open: node {} is energised over it", adapter, nodes.front()),
+                fmt::format("`disable -n {}` first", nodes.front()));
+  for (auto* session : sessions()) {
+    if (!is_over(session::canonical_url(session->url()), adapter)) continue;
+    stop_sync(*session);
+    drop(*session);
+  }
+  return {};
 }
 
 std::vector<session::Session*> BusHolder::sessions() const {
@@ -78,9 +126,10 @@ const show::AxisNames& BusHolder::names(const session::Session& session) const {
   return found == names_.end() ? kNone : found->second;
 }
 
-HeardStates::State BusHolder::heard_state(const session::Session& session, std::uint8_t node) const {
+HeardStates::State BusHolder::heard_state(const session::Session& session, std::uint8_t node,
+                                          const HeardStates::Family& family) const {
   const auto found = opened_.find(&session);
-  return found == opened_.end() ? HeardStates::State() : found->second.heard->state(node);
+  return found == opened_.end() ? HeardStates::State() : found->second.heard->state(node, family);
 }
 
 std::uint64_t BusHolder::opening(const session::Session& session) const {
@@ -117,6 +166,18 @@ Result<void> BusHolder::connect(const std::string& url) {
   return {};
 }
 
+/// How the bus was opened.
+void BusHolder::tell_opened() {
+  const auto& url = session_->url();
+  const auto& options = session_->options();
+  console_->detail(fmt::format(
+      "bus {} is open ({}); longest wait for an answer: {} ms, retries of a read: {}", url,
+      kind_text(*session_), std::chrono::duration_cast<std::chrono::milliseconds>(options.timeout).count(),
+      options.retries));
+  if (!bus_options_.trace.empty())
+    console_->detail(fmt::format("every frame is written to {}", bus_options_.trace.string()));
+}
+
 /// What breaks while a line runs is told at once: a recording may go on for hours.
 void BusHolder::on_trace_failed(const Error& error) {
   trace_failure_ = error;
@@ -146,51 +207,6 @@ void BusHolder::drop(session::Session& session) {
   session_ = open_.empty() ? nullptr : open_.begin()->second.get();
 }
 
-void BusHolder::lose(session::Session& session) {
-  for (const auto node : session.energised().nodes()) warn(names(session), node, session.url() + " was lost");
-  if (produces_sync(session))
-    console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));
-  drop(session);
-}
-
-void BusHolder::let_go() {
-  // Taken out only when its bus is there again: what is known to be energised stays protected.
-  std::map<std::string, std::set<std::uint8_t>> left;
-  for (const auto& [url, nodes] : left_energised_) left[url] = nodes.nodes();
-  stop_and_disable();
-  stop_sync();
-  if (!left.empty()) drop();
-  for (const auto& [url, nodes] : left) {
-    if (const auto back = connect_again(url, nodes); !back) {
-      for (const auto node : nodes) warn(names_[url], node, back.error().message);
-      continue;
-    }
-    stop_and_disable();
-    drop();
-  }
-}
-
-/// A bus that is lost may come back: behind it drives are energised. A signal ends one try to open it, not
-/// the patience.
-Result<void> BusHolder::connect_again(const std::string& url, const std::set<std::uint8_t>& nodes) {
-  const auto end = steady_now() + session::LinkWait::kPatience;
-  auto next_line = steady_now();
-  // What matters is to stop them: a trace that cannot be written, or would be begun anew, is none of it.
-  bus_options_.trace.clear();
-  for (;;) {
-    auto back = connect(url);
-    const auto time = steady_now();
-    const bool may_come = !back && (back.error().code == Errc::bus || back.error().code == Errc::interrupted);
-    if (!may_come || time >= end) return back;
-    if (time >= next_line) {
-      console_->note(fmt::format("notice: {}: trying again to stop node{} {}\n", back.error().message,
-                                 nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));
-      next_line += kTelling;
-    }
-    can::nap(kReconnectPause);
-  }
-}
-
 bool BusHolder::produces_sync() const {
   const auto all = sessions();
   return std::any_of(all.begin(), all.end(), [](auto* session) { return produces_sync(*session); });
@@ -198,6 +214,14 @@ bool BusHolder::produces_sync() const {
 
 bool BusHolder::produces_sync(session::Session& session) {
   return session.can() != nullptr && session.can()->sync() != nullptr;
+}
+
+bool BusHolder::sends_regularly() const {
+  return std::any_of(open_.begin(), open_.end(), [](const auto& one) {
+    auto* can = one.second->can();
+    const bool beats = can != nullptr && can->heartbeat_node();
+    return beats || produces_sync(*one.second) || one.second->network().must_go_on();
+  });
 }
 
 void BusHolder::stop_sync() {
@@ -221,71 +245,6 @@ bool BusHolder::holds_drives() const {
   return must_go_on() || std::any_of(all.begin(), all.end(), [](auto* session) {
            return session->ethercat() != nullptr && !session->energised().empty();
          });
-}
-
-Duration BusHolder::serve() {
-  // A session from which `beside` was taken is a thread's own for a while (cabinet::at_all()).
-  for (auto* session : sessions())
-    if (!session->options().beside) return Duration::max();
-  // What nodes send is heard while somebody thinks: a heartbeat that nobody took in would count as lost.
-  constexpr auto kHeard = std::chrono::milliseconds(50);
-  auto out = open_.empty() ? Duration::max() : Duration(kHeard);
-  for (auto* session : sessions()) {
-    // What goes wrong is told to the next line.
-    (void)session->listen();
-    if (const auto next = session->next_event(); next != kNever)
-      out = std::min(out, std::max(Duration::zero(), next - session->now()));
-  }
-  return out;
-}
-
-Duration BusHolder::serve_beside() {
-  if (open_.size() < 2 || serving_beside_) return Duration::max();
-  serving_beside_ = true;
-  auto out = Duration::max();
-  for (auto* session : sessions()) {
-    if (session == session_ || !(session->network().must_go_on() || produces_sync(*session))) continue;
-    (void)session->listen();
-    if (const auto next = session->next_event(); next != kNever)
-      out = std::min(out, std::max(Duration::zero(), next - session->now()));
-  }
-  serving_beside_ = false;
-  return out;
-}
-
-bool BusHolder::wait_for(pollfd& wanted, Duration longest, const std::function<void(const Error&)>& lost) {
-  std::vector<pollfd> fds{wanted};
-  auto left = longest;
-  for (auto* session : sessions()) {
-    fds.push_back({session->network().poll_fd(), POLLIN, 0});
-    if (const auto next = session->next_event(); next != kNever)
-      left = std::clamp<Duration>(next - session->now(), Duration::zero(), left);
-  }
-  if (wait_or_signal(fds, left) < 0) return false;
-  for (auto* session : sessions())
-    if (const auto heard = session->listen(); !heard && heard.error().code == Errc::bus) {
-      lost(heard.error());
-      lose(*session);
-    }
-  wanted.revents = fds.front().revents;
-  return true;
-}
-
-void BusHolder::stop_and_disable() {
-  for (auto* session : sessions()) stop_and_disable(*session);
-}
-
-void BusHolder::stop_and_disable(session::Session& session) {
-  for (const auto& [node, done] : motion::de_energise(session)) {
-    if (done)
-      console_->err("notice: " + names(session).in(motion::disabled_notice(node)) + "\n");
-    else
-      warn(names(session), node, done.error().message);
-  }
-}
-
-void BusHolder::warn(const show::AxisNames& names, std::uint8_t node, std::string_view why) {
-  console_->err("error: " + names.in(motion::power_warning(node, why)) + "\n");
 }
 
 }  // namespace servoctl::cli

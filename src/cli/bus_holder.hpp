@@ -39,13 +39,24 @@ class BusHolder {
       : console_(&console), bus_options_(std::move(bus_options)), options_(std::move(session_options)) {
     bus_options_.trace_failed = [this](const Error& error) { on_trace_failed(error); };
     console_->set_service([this] { return serve(); });
+    console_->set_presses([this] { return sends_regularly(); });
+    console_->set_pulse([this] { return keep_up(); });
   }
   BusHolder(const BusHolder&) = delete;
   BusHolder& operator=(const BusHolder&) = delete;
-  ~BusHolder() { console_->set_service({}); }
+  ~BusHolder() {
+    console_->set_service({});
+    console_->set_presses({});
+    console_->set_pulse({});
+  }
 
-  /// The nodes that were left energised over this bus, which is open now or was lost.
+  /// The nodes that were left energised over this bus or adapter (`slcan:/dev/ttyACM0`), which is open now or
+  /// was lost.
   std::vector<std::uint8_t> energised_on(std::string_view url) const;
+  /// Whether a bus that is open has this adapter.
+  bool has_adapter(std::string_view adapter) const;
+  /// Closes it, so that the port is free. Errc::refused where drives are energised over it.
+  Result<void> release_adapter(std::string_view adapter);
 
   /// The devices' end of a bus with Modbus; errors as session::open_register_end().
   Result<std::unique_ptr<session::RegisterEnd>> open_register_end(const Settings& settings);
@@ -63,7 +74,8 @@ class BusHolder {
   const show::AxisNames& names(const session::Session& session) const;
 
   /// What the node of the session's bus was last heard to say of its state.
-  HeardStates::State heard_state(const session::Session& session, std::uint8_t node) const;
+  HeardStates::State heard_state(const session::Session& session, std::uint8_t node,
+                                 const HeardStates::Family& family) const;
   /// Tells one opening of a bus from every other one: what was counted since the other, such as restarts of
   /// its nodes, began anew. 0: it is not open.
   std::uint64_t opening(const session::Session& session) const;
@@ -79,6 +91,8 @@ class BusHolder {
 
   bool produces_sync() const;
   static bool produces_sync(session::Session& session);
+  /// SYNC, heartbeats or process data are sent.
+  bool sends_regularly() const;
   /// Nodes depend on what servoctl sends regularly: while their user is waited for it goes on, and before the
   /// program ends they are let go.
   bool must_go_on() const;
@@ -97,9 +111,14 @@ class BusHolder {
  private:
   /// Does what is due on the bus while the user is waited for; the answer is how long it has time.
   Duration serve();
+  /// Sends what is due, and hears nothing; how long that can be left alone.
+  Duration keep_up();
   /// Serves the buses that cannot wait while another is used.
   Duration serve_beside();
   Result<void> connect(const std::string& url);
+  void tell_opened();
+  /// Whether a bus is open over the same port, which may not be open twice.
+  bool holds_port(std::string_view url) const;
   Result<void> connect_again(const std::string& url, const std::set<std::uint8_t>& nodes);
   void stop_and_disable();
   void stop_and_disable(session::Session& session);

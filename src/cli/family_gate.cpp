@@ -13,11 +13,15 @@ namespace {
 
 using session::FamilyVerdict;
 
-std::string forcing_hint(std::span<const std::string> fitting, std::uint8_t node) {
+std::string forcing_hint(std::span<const std::string> fitting, std::uint8_t node, bool is_axis) {
   const std::string_view force = "--force-family continues anyway";
   if (fitting.empty())
     return fmt::format("no family fits: check the nameplate; `info -n {}` shows its identity; {}", node,
                        force);
+  if (is_axis)
+    return fmt::format(
+        "its identity fits {}: if the nameplate agrees, correct `family` in the cabinet file; {}",
+        one_of(fitting), force);
   return fmt::format("its identity fits {}: if the nameplate agrees, add -d {}; {}", one_of(fitting),
                      fitting.front(), force);
 }
@@ -46,7 +50,10 @@ Result<void> FamilyGate::hold(std::span<const std::uint8_t> nodes, const drive::
 }
 
 Result<void> FamilyGate::refuse_duplicates(std::span<const std::uint8_t> nodes) {
-  if (const auto heard = session_->listen(); !heard) return heard;
+  const bool waits = options_.waits && !options_.dry_run;
+  const auto heard =
+      waits ? session::settle_duplicates(*session_, nodes, session::kBeforeMotion) : session_->listen();
+  if (!heard) return heard;
   for (const auto node : nodes)
     if (const auto single = session::refuse_duplicate(*session_, node); !single) return single;
   return {};
@@ -99,8 +106,9 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   if (verdict.kind == FamilyVerdict::Kind::proven) return {};
   const bool contradicted = verdict.kind == FamilyVerdict::Kind::contradicted;
   if (contradicted && refuses && !options_.force) {
-    auto error = drive_error(Errc::refused, node, fmt::format("not a {}: {}", profile.family, verdict.why),
-                             forcing_hint(others(identity, families), node));
+    auto error =
+        drive_error(Errc::refused, node, fmt::format("not a {}: {}", profile.family, verdict.why),
+                    forcing_hint(others(identity, families), node, !options_.names.of(node).empty()));
     error.object = verdict.object;
     return fail(std::move(error));
   }

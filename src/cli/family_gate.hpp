@@ -6,6 +6,7 @@
 
 #include "command/command.hpp"
 #include "session/session.hpp"
+#include "show/axis_names.hpp"
 
 namespace servoctl::cli {
 
@@ -17,6 +18,8 @@ class FamilyGate {
     drive::Folders folders;  ///< Of the families that may fit instead.
     bool force = false;      ///< --force-family
     bool dry_run = false;
+    bool waits = false;  ///< For a second node that answers late: something is to move, or to be stored.
+    show::AxisNames names = {};  ///< Whose family the cabinet file says: -d does not.
   };
 
   FamilyGate(session::Session& session, const Options& options, std::vector<std::string>& notices)

@@ -5,6 +5,7 @@
 #include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/printable.hpp"
+#include "base/regular_files.hpp"
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "cli/terminal/prompt_words.hpp"
@@ -84,6 +85,7 @@ Result<void> go_to(Shell& shell, const LastPlace& place) {
 }  // namespace
 
 Result<std::optional<LastPlace>> LastPlaceFile::read() const {
+  const RegularFilesOnly regular;
   std::error_code error;
   if (!std::filesystem::exists(std::filesystem::symlink_status(path_, error)))
     return std::optional<LastPlace>();
@@ -105,6 +107,7 @@ Result<std::optional<LastPlace>> LastPlaceFile::read() const {
 }
 
 Result<void> LastPlaceFile::write(const LastPlace& place) const {
+  const RegularFilesOnly regular;
   const report::Record document{{"servoctl_prompt", kPlaceVersion},
                                 {"bus", report::text_or_null(place.bus)},
                                 {"nodes", report::text_or_null(place.nodes)},
@@ -115,6 +118,7 @@ Result<void> LastPlaceFile::write(const LastPlace& place) const {
 }
 
 void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
+  const RegularFilesOnly regular;
   const auto& now = shell.defaults();
   const bool told = !now.bus.empty() || !now.nodes.empty() || !now.drive.empty();
   if (told || state_folder.empty()) return;

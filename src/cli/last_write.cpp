@@ -12,6 +12,7 @@
 #include "session/pdo_change.hpp"
 #include "settings/change.hpp"
 #include "settings/comparison.hpp"
+#include "show/reading.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -67,6 +68,14 @@ drive::Meaning with_known_type(std::uint8_t node, const drive::Target& target, c
                                const Bytes& bytes) {
   if (meaning.type_known && meaning.size_known) return meaning;
   return settings::learned_meaning(node, target, meaning, bytes).value_or(meaning);
+}
+
+/// As people read it.
+std::string readable_text(const drive::Target& target, std::uint8_t node, const drive::Meaning& meaning,
+                          const Bytes& bytes) {
+  const auto decoded = show::decode_value({.node = node, .target = target, .type = meaning.type}, bytes);
+  const auto* label = std::get_if<std::string>(&decoded.label.data());
+  return decoded.text + (label == nullptr ? "" : " (" + *label + ")");
 }
 
 std::string name_of_node(const Context& context, std::uint8_t node) {
@@ -147,6 +156,8 @@ void LastWrite::look_at(const Context& context, const settings::NamedValue& name
                               .after = {},
                               .before_text = text,
                               .after_text = {},
+                              .before_shown = readable_text(*target, node, meaning, *before),
+                              .after_shown = {},
                               .identity = *identity,
                               .opening = opening_,
                               .boots = context.session->watch().boots(node)});
@@ -175,6 +186,7 @@ void LastWrite::settle(const Context& context) {
       line.why_not =
           fmt::format("{} on node {}: what it holds now could not be read", value.name, value.node);
     if (now) value.after_text = text_of(meaning, *now);
+    if (now) value.after_shown = readable_text(target, value.node, meaning, *now);
     changed.push_back(std::move(value));
   }
   if (changed.empty()) return;
@@ -188,6 +200,7 @@ void LastWrite::turn_round(Line line) {
   for (auto& value : line.values) {
     std::swap(value.before, value.after);
     std::swap(value.before_text, value.after_text);
+    std::swap(value.before_shown, value.after_shown);
     if (value.before_text.empty()) line.why_not = "what it held before cannot be written as a text";
   }
   line_ = std::move(line);

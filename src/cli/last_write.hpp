@@ -29,6 +29,8 @@ class LastWrite {
     Bytes after;
     std::string before_text;  ///< Reads as that value in a line that writes it.
     std::string after_text;
+    std::string before_shown;  ///< As people read it, with its unit.
+    std::string after_shown;
     session::Identity identity;
     std::uint64_t opening = 0;  ///< Of the bus, as BusHolder::opening().
     std::uint32_t boots = 0;    ///< Of the node since then, when it was written.

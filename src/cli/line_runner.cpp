@@ -1,5 +1,7 @@
 #include "cli/line_runner.hpp"
 
+#include <fmt/format.h>
+
 #include "base/printable.hpp"
 #include "cli/batch/batch_command.hpp"
 #include "cli/last_write.hpp"
@@ -33,10 +35,11 @@ int log_line(Shell& shell, const std::vector<std::string>& words) {
     console.set_log(std::move(*log));
   }
   const auto name = console.log() == nullptr ? std::string() : console.log()->name();
-  console.note(name.empty() ? std::string("notice: there is no log\n")
-                            : "notice: all that is typed and answered " +
-                                  std::string(words.size() == 2 ? "went" : "goes") + " into " +
-                                  printable(name) + "\n");
+  const auto told = name.empty() ? std::string("there is no log")
+                    : words.size() == 2
+                        ? fmt::format("all that is typed and answered went into {}", printable(name))
+                        : fmt::format("all that is typed and answered goes into {}", printable(name));
+  console.note("notice: " + told + "\n");
   if (words.size() == 2) console.set_log(nullptr);
   return 0;
 }

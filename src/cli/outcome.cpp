@@ -1,23 +1,39 @@
 #include "cli/outcome.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "base/printable.hpp"
+#include "base/text.hpp"
+#include "report/chinese_marks.hpp"
 #include "report/chinese_value.hpp"
+#include "report/text_kinds.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cli {
 namespace {
 
+using report::List;
+using report::Show;
+using report::Table;
 using report::Value;
+
+/// A line for people. What is in Chinese already is not looked at again: words that one types look like
+/// English.
+std::string remark(std::string_view lead, std::string_view text, bool told) {
+  if (!told || !report::has_chinese(text)) return std::string(lead) + printable(text) + "\n";
+  return std::string(report::chinese_word(lead)) + printable(report::chinese_marks(text)) + "\n";
+}
 
 /// Errors as people read them: what happened, then what to do. The same advice for several errors is given
 /// once.
-std::string errors_text(std::span<const Error> errors) {
+std::string errors_text(std::span<const Error> errors, bool told) {
   std::string out;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (i > 0 && errors[i].message == errors[i - 1].message) continue;
-    out += "error: " + printable(errors[i].message) + "\n";
+    out += remark("error: ", errors[i].message, told);
     const bool again = i + 1 < errors.size() && errors[i + 1].hint == errors[i].hint;
-    if (!errors[i].hint.empty() && !again) out += "  hint: " + printable(errors[i].hint) + "\n";
+    if (!errors[i].hint.empty() && !again) out += remark("  hint: ", errors[i].hint, told);
   }
   return out;
 }
@@ -25,7 +41,7 @@ std::string errors_text(std::span<const Error> errors) {
 /// Help is in the language of who reads already.
 Value shown(const Outcome& outcome) {
   const bool english = !outcome.settings.shows_chinese() || outcome.command == "help";
-  return english ? outcome.result : report::chinese_value(outcome.result);
+  return english ? outcome.result : report::chinese_value(outcome.result, &outcome.names);
 }
 
 report::Record envelope(const Outcome& outcome) {
@@ -33,8 +49,7 @@ report::Record envelope(const Outcome& outcome) {
                      {"command", report::text_or_null(outcome.command)},
                      {"ok", outcome.errors.empty()},
                      {"bus", outcome.uses_bus ? report::text_or_null(outcome.settings.bus) : Value()}};
-  if (!outcome.errors.empty())
-    out.push_back({"error", show::error_record(outcome.errors.front(), outcome.abort_words)});
+  if (!outcome.errors.empty()) out.push_back({"error", error_record(outcome)});
   out.push_back({"result", outcome.result});
   report::List notices;
   for (const auto& notice : outcome.notices) notices.emplace_back(notice);
@@ -42,9 +57,65 @@ report::Record envelope(const Outcome& outcome) {
   return out;
 }
 
+/// Whether both are one column: a key stands once in a record, whatever the text of either shows.
+bool are_one(const Table::Column& a, const Table::Column& b) {
+  return a.key == b.key && (a.show == Show::text) == (b.show == Show::text);
+}
+
+/// The columns of both, those of the first before those that only the second has.
+void add_rows(Table& to, const Table& from) {
+  std::vector<std::size_t> places;
+  for (const auto& column : from.columns) {
+    auto at = std::find_if(to.columns.begin(), to.columns.end(),
+                           [&](const Table::Column& known) { return are_one(known, column); });
+    if (at == to.columns.end()) {
+      for (auto& row : to.rows) row.emplace_back();
+      to.columns.push_back(column);
+      at = to.columns.end() - 1;
+    }
+    if (at->show != column.show) at->show = Show::everywhere;
+    places.push_back(static_cast<std::size_t>(at - to.columns.begin()));
+  }
+  for (const auto& row : from.rows) {
+    List cells(to.columns.size());
+    for (std::size_t i = 0; i < row.size(); ++i) cells[places[i]] = row[i];
+    to.rows.push_back(std::move(cells));
+  }
+  to.documents.insert(to.documents.end(), from.documents.begin(), from.documents.end());
+  to.json_only = to.json_only && from.json_only;
+  to.below.insert(to.below.end(), from.below.begin(), from.below.end());
+}
+
+/// Tables become one, everything else a list.
+Value joined(Value all, Value more) {
+  if (all.is_null()) return more;
+  if (more.is_null()) return all;
+  auto* table = std::get_if<Table>(&all.data());
+  const auto* rows = std::get_if<Table>(&more.data());
+  if (table != nullptr && rows != nullptr) {
+    add_rows(*table, *rows);
+    return all;
+  }
+  List list;
+  for (auto* one : {&all, &more}) {
+    if (auto* inner = std::get_if<List>(&one->data()))
+      std::move(inner->begin(), inner->end(), std::back_inserter(list));
+    else
+      list.push_back(std::move(*one));
+  }
+  return list;
+}
+
 }  // namespace
 
 int Outcome::code() const { return errors.empty() ? 0 : exit_code(errors.front().code); }
+
+Value error_record(const Outcome& outcome) {
+  auto out = show::error_record(outcome.errors.front(), outcome.abort_words);
+  for (auto& field : std::get<report::Record>(out.data()))
+    if (field.key == "axis") field.value = report::text_or_null(outcome.axis);
+  return out;
+}
 
 Outcome failed(Error error, Settings settings, std::string_view command) {
   Outcome out{.command = std::string(command), .settings = std::move(settings)};
@@ -52,11 +123,15 @@ Outcome failed(Error error, Settings settings, std::string_view command) {
   return out;
 }
 
+std::string text_of(const Outcome& outcome, std::size_t width) {
+  return report::to_text(shown(outcome), width);
+}
+
 int show(Console& console, const Outcome& outcome) {
   if (outcome.settings.json) {
-    console.out(report::to_json(envelope(outcome)) + "\n");
+    console.json(report::to_json(envelope(outcome)) + "\n");
   } else {
-    console.out(report::to_text(shown(outcome), console.width()));
+    console.out(text_of(outcome, console.width()));
     show_remarks(console, outcome);
   }
   return outcome.code();
@@ -64,8 +139,23 @@ int show(Console& console, const Outcome& outcome) {
 
 void show_remarks(Console& console, const Outcome& outcome) {
   if (!outcome.settings.quiet || outcome.leaves_power)
-    for (const auto& notice : outcome.notices) console.err("notice: " + printable(notice) + "\n");
-  console.err(errors_text(outcome.errors));
+    for (const auto& notice : outcome.notices) console.err(remark("notice: ", notice, outcome.told));
+  console.err(errors_text(outcome.errors, outcome.told));
+}
+
+void add_outcome(Outcome& all, Outcome part) {
+  all.result = joined(std::move(all.result), std::move(part.result));
+  if (all.errors.empty()) {
+    all.abort_words = std::move(part.abort_words);
+    all.axis = std::move(part.axis);
+  }
+  all.told = part.told;
+  all.leaves_power = all.leaves_power || part.leaves_power;
+  all.names.merge(part.names);
+  std::move(part.errors.begin(), part.errors.end(), std::back_inserter(all.errors));
+  std::move(part.notices.begin(), part.notices.end(), std::back_inserter(all.notices));
+  if (("," + all.settings.bus + ",").find("," + part.settings.bus + ",") == std::string::npos)
+    append(all.settings.bus, part.settings.bus, ",");
 }
 
 }  // namespace servoctl::cli

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <map>
 #include "cli/cli11.hpp"
 
 #include "base/text.hpp"
 #include "command/help_text.hpp"
+#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::cli {
@@ -46,6 +48,15 @@ std::size_t first_plain_word(const std::vector<std::string>& words) {
     i += takes_next ? 2 : 1;
   }
   return std::min(i, words.size());
+}
+
+/// `FILE`, as the synopsis of `help` has it.
+std::string as_in_help(const Parameter& parameter) {
+  std::string out(parameter.name);
+  if (out.starts_with("-")) return out;
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return out;
 }
 
 /// Every value stays text, because CLI11 reads "010" as 8 and refuses "6040h". What one line gave is
@@ -157,8 +168,8 @@ class LineParser {
       const auto& parameter = *entry.parameter;
       if (entry.values.empty() && entry.option->count() == 0) {
         if (parameter.required)
-          return fail(Errc::usage, fmt::format("{}: {} is missing", command_->path, parameter.name),
-                      fmt::format("{}: {}; {}", parameter.name, parameter.help, help_hint()));
+          return fail(Errc::usage, fmt::format("{}: {} is missing", command_->path, as_in_help(parameter)),
+                      fmt::format("{}: {}; {}", as_in_help(parameter), parameter.help, help_hint()));
         continue;
       }
       if (parameter.kind == Kind::flag) out.add(parameter.name, "true");
@@ -180,12 +191,7 @@ class LineParser {
   }
 
   tl::unexpected<Error> one_too_many(const std::string& word) const {
-    // Axes of a cabinet file that are there were found before.
-    const std::string of_nodes = includes(command_->needs, command::Needs::node)
-                                     ? "nodes, and axes of the cabinet file, are named by -n; "
-                                     : "";
-    return fail(Errc::usage, fmt::format("{}: unexpected argument '{}'", command_->path, word),
-                of_nodes + help_hint());
+    return fail(Errc::usage, fmt::format("{}: unexpected argument '{}'", command_->path, word), help_hint());
   }
 
   tl::unexpected<Error> superfluous(const std::string& word) const {
@@ -217,12 +223,16 @@ tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std
   for (const auto* command : command::registry()) {
     paths.emplace_back(command->path);
     if (split(command->path, ' ').size() > 1 && split(command->path, ' ').front() == words[first])
-      in_group.emplace_back(command->path);
+      in_group.push_back(fmt::format("`{}`", command->path));
   }
   if (!in_group.empty()) {
     const auto said = first + 1 < words.size() ? words[first] + " " + words[first + 1] : words[first];
-    return fail(Errc::usage, fmt::format("'{}' is not a command", said), "use " + one_of(in_group));
+    return fail(Errc::usage, fmt::format("'{}' is not a command", said),
+                fmt::format("use {}", one_of(in_group)));
   }
+  if (const auto* word = command::find_prompt_word(words[first]); word != nullptr)
+    return fail(Errc::usage, fmt::format("'{}' is a word of the prompt, and no command", word->name),
+                fmt::format("`servoctl` alone opens the prompt; `help {}` says what it does", word->name));
   auto hint = did_you_mean(words[first], paths);
   if (hint.empty()) hint = "`help` lists the commands";
   return fail(Errc::usage, fmt::format("'{}' is not a command", words[first]), std::move(hint));
@@ -259,7 +269,12 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
   auto rest = words;
   const auto begin = rest.begin() + static_cast<std::ptrdiff_t>(match.first);
   rest.erase(begin, begin + static_cast<std::ptrdiff_t>(match.used));
+  const bool asks = match.command->path == "help" && !rest.empty() && rest.back().starts_with('-');
+  auto of_option = rest;
+  if (asks) of_option.insert(of_option.end() - 1, "--");
   auto arguments = parser_of(*match.command).parse(std::move(rest));
+  // `help --for`: about an option, where the line itself cannot have it.
+  if (!arguments && asks) arguments = parser_of(*match.command).parse(std::move(of_option));
   if (!arguments) return fail(arguments.error());
   return ParsedLine{match.command, std::move(*arguments)};
 }

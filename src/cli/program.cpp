@@ -18,17 +18,25 @@
 #include "cli/batch/input_lines.hpp"
 #include "cli/last_place.hpp"
 #include "cli/line_runner.hpp"
+#include "cli/outcome.hpp"
 #include "cli/parse.hpp"
 #include "cli/shell.hpp"
 #include "cli/state_folder.hpp"
 #include "cli/tab_answer.hpp"
+#include "cli/terminal/ascii_form.hpp"
 #include "cli/terminal/console.hpp"
+#include "cli/terminal/pager.hpp"
 #include "cli/terminal/prompt.hpp"
 #include "cli/terminal/signals.hpp"
 #include "cli/words.hpp"
 
 namespace servoctl::cli {
 namespace {
+
+constexpr std::string_view kNoPager = "--no-pager";
+constexpr std::string_view kManual = "man";
+constexpr std::string_view kPagerFailed =
+    "the pager failed: this is the text as it is; SERVOCTL_PAGER names another";
 
 /// A standard stream that was closed would be the next thing that is opened: text for people would go into
 /// the socket of the bus.
@@ -81,20 +89,57 @@ std::vector<std::string> as_run(std::vector<std::string> words, std::size_t at) 
 
 std::string standard_text() { return standard_input().take_rest(); }
 
+/// Whether the line has a result that is whole, for a person at a terminal, and no drive waits for them.
+bool may_page(Shell& shell, const Outcome& outcome, const std::vector<std::string>& words,
+              const StandardConsole& console) {
+  const auto end = std::find(words.begin(), words.end(), "--");
+  const bool unwanted = std::find(words.begin(), end, kNoPager) != end || interrupted();
+  const bool is_whole = !outcome.settings.json && !console.has_shown();
+  const bool holds = outcome.leaves_power || shell.must_go_on();
+  return !unwanted && is_whole && !holds && console.height() > 0 && ::isatty(STDIN_FILENO) == 1;
+}
+
+/// What shows the outcome a window at a time; empty where that is not wanted.
+std::string pager_for(const Outcome& outcome) {
+  auto pager = pager_command();
+  const bool is_manual = outcome.command == kManual && !pager.empty() && is_in_path("man");
+  return is_manual ? "man -l -" : pager;
+}
+
+/// A line that nothing follows. What is longer than the window goes to a pager, which may be read for an
+/// hour: no bus is open then.
+int run_one(Shell& shell, const std::vector<std::string>& words, StandardConsole& console) {
+  const auto outcome = shell.perform(words);
+  const auto text =
+      may_page(shell, outcome, words, console) ? text_of(outcome, console.width()) : std::string();
+  const bool is_long = is_longer_than(text, console.width(), console.height());
+  const auto pager = is_long ? pager_for(outcome) : std::string();
+  if (pager.empty()) {
+    const int code = show(console, outcome);
+    return code == 0 ? shell.hold() : code;
+  }
+  const int code = shell.close(outcome.code());
+  if (!show_through(pager, console.as_written(text))) {
+    console.note(fmt::format("notice: {}\n", kPagerFailed));
+    console.out(text);
+  }
+  show_remarks(console, outcome);
+  return code;
+}
+
 int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConsole& console) {
   const auto first = match_command(words).first;
   console.set_chinese(wants_chinese(words, shell.defaults().chinese));
+  console.set_ascii(locale_is_not_utf8());
   if (first < words.size() && words[first] == "-")
     return run_batch(shell, as_run(words, first), standard_text);
   if (is_batch(words)) return run_batch(shell, words, standard_text);
-  if (first < words.size() || asks_for_help(words)) {
-    const int code = shell.run(words);
-    return code == 0 ? shell.hold() : code;
-  }
+  if (first < words.size() || asks_for_help(words)) return run_one(shell, words, console);
   auto settings = settings_for_lines(shell.defaults(), words);
   if (!settings) return shell.report_error(settings.error(), false);
   shell.defaults() = std::move(*settings);
   console.set_chinese(shell.defaults().chinese);
+  console.set_colour(shell.defaults().colour);
   if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell);
   if (shell.defaults().bus.empty())
     take_last_place(shell, state_folder());

@@ -4,10 +4,13 @@
 
 #include "base/printable.hpp"
 #include "cli/batch/setting_lines.hpp"
+#include "cli/heard_starts.hpp"
 #include "cli/shell.hpp"
+#include "cli/terminal/fitted.hpp"
 #include "session/modbus_network.hpp"
 #include "session/serve_registers.hpp"
 #include "session/serve_ring.hpp"
+#include "show/chinese_names.hpp"
 
 namespace servoctl::cli {
 
@@ -17,44 +20,81 @@ RunningLine::RunningLine(Shell& shell, const Settings& settings, command::Contex
   context.front_end = this;
 }
 
+const report::Names* RunningLine::chinese_names() {
+  if (!settings_->shows_chinese() || context_->profile == nullptr) return nullptr;
+  if (!names_) names_ = show::chinese_names(*context_->profile);
+  return &*names_;
+}
+
+std::string RunningLine::in_language(std::string_view text) {
+  return shell_->console().chinese() ? report::in_chinese(text, chinese_names()) : std::string(text);
+}
+
 Result<void> RunningLine::confirm(std::string_view question) {
   if (settings_->yes) return {};
   const auto turn = shell_->take_turn();
   auto& console = shell_->console();
   const auto shown = printable(settings_->names.in(question));
-  const auto asked = printable(settings_->names.in(console.in_language(question)));
+  const auto asked = printable(settings_->names.in(in_language(question)));
+  shell_->end_progress();
   if (!console.can_ask())
     return fail(Errc::refused, fmt::format("confirmation needed: {}", shown), "add --yes to confirm");
-  if (console.ask(asked)) return {};
-  return fail(Errc::refused, "not confirmed; nothing was sent");
+  const HeardStarts before(shell_->sessions());
+  if (console.ask(asked)) return hold_nodes(before);
+  return fail(shell_->cancelled() ? Errc::interrupted : Errc::refused, "not confirmed; nothing was sent");
+}
+
+/// What was looked at before the question is what the answer is about.
+Result<void> RunningLine::hold_nodes(const HeardStarts& before) const {
+  auto nodes = context_->nodes;
+  if (!nodes.empty()) nodes.insert(nodes.end(), context_->free_nodes.begin(), context_->free_nodes.end());
+  const auto node = before.started_since(nodes);
+  if (!node) return {};
+  return fail(drive_error(Errc::refused, *node,
+                          "it has started while the question waited, and may be another drive, or hold other "
+                          "values, than the question was about",
+                          "nothing was sent; give the line again, which looks at it anew"));
 }
 
 void RunningLine::emit(const report::Record& sample, std::string_view line) {
   const auto turn = shell_->take_turn();
   const auto& names = settings_->names;
+  shell_->note_output();
   if (settings_->samples && names.empty()) {
-    shell_->console().out(report::to_json(sample) + "\n");
+    shell_->console().json(report::to_json(sample) + "\n");
   } else if (settings_->samples) {
     auto named = sample;
     names.put_into(named);
-    shell_->console().out(report::to_json(named) + "\n");
+    shell_->console().json(report::to_json(named) + "\n");
   } else if (!settings_->json && !line.empty()) {
-    const auto shown = shell_->console().in_language(line);
-    shell_->console().out(printable(names.empty() ? shown : names.in(shown)) + "\n");
+    auto& console = shell_->console();
+    const auto shown = in_language(line);
+    console.out(fitted(printable(names.empty() ? shown : names.in(shown)), console.width()) + "\n");
   }
 }
 
 void RunningLine::write(std::string_view lines) {
   const auto turn = shell_->take_turn();
-  shell_->console().out(lines);
+  shell_->note_output();
+  if (settings_->samples) return shell_->console().json(lines);
+  shell_->console().out(fitted(lines, shell_->console().width()));
 }
 
 void RunningLine::tell(std::string_view text) {
   const auto turn = shell_->take_turn();
   shell_->end_progress();
   // What a question is about stands before it.
-  if (!settings_->quiet || !settings_->yes)
-    shell_->console().err(settings_->names.in(shell_->console().in_language(text)));
+  if (!settings_->quiet || !settings_->yes) shell_->console().err(settings_->names.in(in_language(text)));
+}
+
+void RunningLine::show_progress(std::string_view line, TimePoint now) {
+  const auto turn = shell_->take_turn();
+  shell_->show_progress(line, now);
+}
+
+void RunningLine::show_share(double share, TimePoint begin, TimePoint now) {
+  const auto turn = shell_->take_turn();
+  shell_->show_share(share, begin, now);
 }
 
 std::size_t RunningLine::width() const { return shell_->console().width(); }
@@ -110,12 +150,16 @@ Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const
 
 Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
                                       FamilyGate::Weight weight) {
+  shell_->note_family(*context_->session, nodes, profile);
   if (auto* line = context_->session->modbus(); line != nullptr && profile != nullptr)
     for (const auto node : nodes) line->learn(node, profile->rules.modbus);
-  FamilyGate gate(
-      *context_->session,
-      {.folders = shell_->drive_folders(), .force = settings_->force_family, .dry_run = settings_->dry_run},
-      context_->notices);
+  FamilyGate gate(*context_->session,
+                  {.folders = shell_->drive_folders(),
+                   .force = settings_->force_family,
+                   .dry_run = settings_->dry_run,
+                   .waits = waits_,
+                   .names = settings_->names},
+                  context_->notices);
   return gate.hold(nodes, profile, weight);
 }
 
@@ -124,9 +168,21 @@ Result<const drive::Profile*> RunningLine::family(const std::string& name) {
   return shell_->profile(name);
 }
 
+session::Protection::Hold RunningLine::protect() { return shell_->protect(session::Care::unsettled); }
+
 std::vector<std::uint8_t> RunningLine::energised_on(std::string_view url) const {
   const auto turn = shell_->take_turn();
   return shell_->energised_on(url);
+}
+
+bool RunningLine::has_adapter(std::string_view adapter) const {
+  const auto turn = shell_->take_turn();
+  return shell_->has_adapter(adapter);
+}
+
+Result<void> RunningLine::release_adapter(std::string_view adapter) {
+  const auto turn = shell_->take_turn();
+  return shell_->release_adapter(adapter);
 }
 
 std::unique_ptr<command::Keys> RunningLine::open_keys() { return shell_->console().open_keys(); }

@@ -17,6 +17,18 @@ std::string variable(const char* name) {
   return value == nullptr ? std::string() : std::string(value);
 }
 
+/// How results look.
+void apply_form(Settings& settings, const command::Arguments& arguments) {
+  // Where a command writes a file, its own --output may name that.
+  if (const auto form = arguments.text("--output"); command::is_output_form(form)) {
+    settings.json = form != "text";
+    settings.samples = form == "jsonl";
+  }
+  if (arguments.has("--json")) settings.json = true;
+  if (arguments.has("--color")) settings.colour = parse_colour(arguments.text("--color"));
+  if (arguments.has("--lang")) settings.chinese = arguments.text("--lang") == "zh";
+}
+
 }  // namespace
 
 bool wants_json(const std::vector<std::string>& words) {
@@ -40,6 +52,15 @@ bool wants_chinese(const std::vector<std::string>& words, bool otherwise) {
   return otherwise;
 }
 
+Colour wanted_colour(const std::vector<std::string>& words, Colour otherwise) {
+  constexpr std::string_view kColour = "--color";
+  for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
+    if (words[i].starts_with("--color=")) otherwise = parse_colour(words[i].substr(kColour.size() + 1));
+    if (words[i] == kColour && i + 1 < words.size()) otherwise = parse_colour(words[i + 1]);
+  }
+  return otherwise;
+}
+
 Settings settings_from_environment() {
   Settings out;
   out.bus = variable("SERVOCTL_BUS");
@@ -59,6 +80,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
   text("--node", base.nodes);
   base.nodes_typed = arguments.has("--node");
   text("--drive", base.drive);
+  base.drive_typed = arguments.has("--drive");
   if (arguments.has("--timeout")) {
     const auto timeout = read_duration(arguments.text("--timeout"));
     if (!timeout || *timeout == Duration::zero())
@@ -75,15 +97,12 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
                   fmt::format("--retries: '{}' is not a number from 0 to 100", arguments.text("--retries")));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
-  // Where a command writes a file, its own --output may name that.
-  if (const auto form = arguments.text("--output"); command::is_output_form(form)) {
-    base.json = form != "text";
-    base.samples = form == "jsonl";
-  }
-  if (arguments.has("--json")) base.json = true;
-  if (arguments.has("--lang")) base.chinese = arguments.text("--lang") == "zh";
+  if (arguments.has("--quiet") && arguments.has("--verbose"))
+    return fail(Errc::usage, "--quiet and --verbose contradict each other", "leave one of them out");
+  apply_form(base, arguments);
   base.yes = base.yes || arguments.has("--yes");
-  base.quiet = base.quiet || arguments.has("--quiet");
+  base.quiet = arguments.has("--quiet") || (base.quiet && !arguments.has("--verbose"));
+  base.verbose = arguments.has("--verbose") || (base.verbose && !arguments.has("--quiet"));
   base.force_family = base.force_family || arguments.has("--force-family");
   base.read_only = base.read_only || arguments.has("--read-only");
   base.dry_run = base.dry_run || arguments.has("--dry-run");

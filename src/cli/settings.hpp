@@ -8,6 +8,7 @@
 
 #include "base/result.hpp"
 #include "base/time.hpp"
+#include "cli/terminal/colour.hpp"
 #include "command/command.hpp"
 #include "show/axis_names.hpp"
 
@@ -19,13 +20,16 @@ struct Settings {
   std::string nodes;         ///< As written: `1,3,5-8`, `all`; empty: none given.
   bool nodes_typed = false;  ///< In the line itself, not by `use` or the environment.
   std::string drive;         ///< Family or file; empty: none given.
+  bool drive_typed = false;  ///< In the line itself.
   Duration timeout = std::chrono::milliseconds(500);
   std::uint32_t retries = 1;
   bool json = false;
   bool samples = false;  ///< One JSON document a sample.
   bool chinese = false;
   bool yes = false;
+  Colour colour = Colour::automatic;
   bool quiet = false;         ///< No notices and no progress.
+  bool verbose = false;       ///< What is done is told.
   bool force_family = false;  ///< Although the drive's identity contradicts the family.
   bool read_only = false;
   bool dry_run = false;
@@ -44,6 +48,8 @@ Settings settings_from_environment();
 
 /// What the words say of it, in a line that may be wrong elsewhere.
 bool wants_json(const std::vector<std::string>& words);
+/// The same of the colours.
+Colour wanted_colour(const std::vector<std::string>& words, Colour otherwise);
 /// The same of the language; `otherwise` where they say nothing.
 bool wants_chinese(const std::vector<std::string>& words, bool otherwise);
 

@@ -7,9 +7,10 @@
 #include <span>
 #include <utility>
 
-#include "base/object_address.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "cli/axis_word.hpp"
+#include "cli/hint_place.hpp"
 #include "cli/terminal/signals.hpp"
 #include "command/help_text.hpp"
 #include "report/catalogue.hpp"
@@ -38,32 +39,28 @@ void learn_family(session::Session& session, std::span<const std::uint8_t> nodes
   }
 }
 
-/// Whether a word stands for objects that only a dictionary knows: a name, or a pattern.
-bool names_objects(const command::Command& command, const command::Arguments& arguments) {
-  const auto is_name = [](const std::string& word) { return !parse_object_address(word); };
-  return std::any_of(command.parameters.begin(), command.parameters.end(), [&](const auto& parameter) {
-    const auto words = arguments.all(parameter.name);
-    return parameter.kind == command::Kind::object && std::any_of(words.begin(), words.end(), is_name);
-  });
-}
-
 /// Whatever is told of a line speaks of axes by their names.
 void name_axes_in(const show::AxisNames& names, command::Context& context, Value& result) {
-  for (auto& error : context.errors) {
-    error.message = names.in(error.message);
-    error.hint = names.in(error.hint);
-  }
+  for (auto& error : context.errors)
+    for (auto* text : {&error.message, &error.hint}) *text = names.in(*text);
   for (auto& notice : context.notices) notice = names.in(notice);
   names.put_into(result);
 }
 
 /// What is told of `node 3` is looked for under that name, before it has another.
-void put_into_chinese(command::Context& context) {
-  for (auto& error : context.errors) {
-    error.message = report::in_chinese(error.message);
-    error.hint = report::in_chinese(error.hint);
-  }
-  for (auto& notice : context.notices) notice = report::in_chinese(notice);
+void put_into_chinese(command::Context& context, const report::Names* of_family) {
+  for (auto& error : context.errors)
+    for (auto* text : {&error.message, &error.hint}) *text = report::in_chinese(*text, of_family);
+  for (auto& notice : context.notices) notice = report::in_chinese(notice, of_family);
+}
+
+/// What nobody took from the output in time.
+void tell_unread(Console& console, std::vector<std::string>& notices) {
+  if (const auto left_out = console.take_left_out(); left_out > 0)
+    notices.push_back(fmt::format(
+        "{} samples were not shown: the output was not read in time; --csv has every sample", left_out));
+  if (const auto untold = console.take_untold(); untold > 0)
+    notices.push_back(fmt::format("{} messages were not shown: the output was not read in time", untold));
 }
 
 }  // namespace
@@ -74,35 +71,12 @@ Shell::Shell(Console& console, Options options)
       progress_(console),
       protection_([this](session::Care worst) {
         protect_from_signals(worst != session::Care::none);
-        console_->set_care(worst);
+        // No motor waits for what is put in order: who reads is waited for as ever.
+        console_->set_care(worst == session::Care::unsettled ? session::Care::none : worst);
       }),
       bus_(console, {.drive_folders = options_.drive_folders, .trace = {}, .clock = options_.clock},
            session_options()) {
   console_->set_chinese(options_.defaults.chinese);
-}
-
-session::Options Shell::session_options() {
-  session::Options out;
-  out.cancelled = options_.cancelled;
-  out.protection = &protection_;
-  // Two that start at once have process numbers close together, or other times.
-  constexpr std::uint64_t kSpread = 0x9E37'79B9'7F4A'7C15;
-  const auto time = static_cast<std::uint64_t>(steady_now().time_since_epoch().count());
-  out.claim_seed = (static_cast<std::uint64_t>(::getpid()) * kSpread ^ time * kSpread) >> 16U;
-  out.tell = [this](std::string_view line) {
-    const auto turn = take_turn();
-    progress_.end();
-    console_->note("notice: " + std::string(line) + "\n");
-  };
-  out.progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
-    const auto turn = take_turn();
-    progress_.update(done, total, now);
-  };
-  out.list_progress = [this](std::size_t done, std::size_t total, TimePoint now) {
-    const auto turn = take_turn();
-    progress_.update_list(done, total, now);
-  };
-  return out;
 }
 
 int Shell::run(const std::vector<std::string>& words) { return show(*console_, perform(words)); }
@@ -114,13 +88,25 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   settings.json = settings.json || wants_json(words);
   settings.chinese = wants_chinese(words, settings.chinese);
   console_->set_chinese(settings.chinese);
+  console_->set_colour(settings.colour = wanted_colour(words, settings.colour));
   if (asks_for_help(words)) return help(words, std::move(settings));
   auto parsed = parse_line(name_axes(words, match));
-  if (!parsed) return failed(parsed.error(), std::move(settings), path);
+  if (!parsed) {
+    const auto known = [this] { return cabinet_.get(options_.defaults); };
+    return failed(about_axis(parsed.error(), words, match, known), std::move(settings), path);
+  }
   auto applied = apply_options(options_.defaults, parsed->arguments);
   if (!applied) return failed(applied.error(), std::move(settings), path);
   console_->set_quiet(applied->quiet);
-  return perform_parsed(*parsed, *applied);
+  const ShownWait shown(*this);
+  console_->set_verbose(applied->verbose);
+  cabinet_told_ = false;
+  auto out = perform_parsed(*parsed, *applied);
+  // What is done behind the last line is done for it.
+  if (stays_open_) console_->set_verbose(options_.defaults.verbose);
+  const auto told = told_of_words(*parsed->command, parsed->arguments);
+  out.notices.insert(out.notices.begin(), told.begin(), told.end());
+  return with_place(std::move(out), *parsed);
 }
 
 /// Help is text for a person, whatever form results have.
@@ -143,6 +129,7 @@ Result<void> Shell::make_ready(Run& run, const command::Arguments& arguments) {
   context.axes = run.axes;
   context.nodes_typed = run.settings.nodes_typed;
   context.chinese = run.settings.chinese;
+  context.json = run.settings.json;
   context.dry_run = run.settings.dry_run;
   context.read_only = run.settings.read_only;
   context.stays_open = stays_open_;
@@ -163,7 +150,8 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   if (on_bus && includes(command.needs, Needs::node) && run.settings.nodes.empty())
     return fail(no_node(command));
   if (const auto right = check_words(command, run.context, arguments); !right) return right;
-  if (!run.settings.drive.empty() || includes(command.needs, Needs::dictionary) ||
+  const bool in_file = !command.families_in.empty() && arguments.has(command.families_in);
+  if (!run.settings.drive.empty() || (includes(command.needs, Needs::dictionary) && !in_file) ||
       (on_bus && names_objects(command, arguments)))
     if (const auto ready = prepare_profile(run, command.effect_with(arguments) > Effect::reads); !ready)
       return ready;
@@ -179,6 +167,8 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   if (const auto named = prepare_nodes(run); !named) return named;
   if (run.context.profile != nullptr) learn_family(**opened, run.context.nodes, *run.context.profile);
   const auto weight = weight_of(command, arguments);
+  run.changes = weight == FamilyGate::Weight::changes && !run.settings.dry_run;
+  run.line.wait_for_late(command.effect_with(arguments) >= command::Effect::stores);
   if (const auto held = run.line.hold_family(run.context.nodes, run.context.profile, weight); !held)
     return held;
   return weight == FamilyGate::Weight::changes ? hold_serials(run) : Result<void>();
@@ -212,32 +202,24 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
   hear_second_node(run);
   if (!result) errors.insert(errors.begin(), result.error());
+  const bool is_lost = tell_lost_bus(run);
+  tell_second_node(run);
   learn_from(run);
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
     run.context.notices.push_back(std::move(notice));
-  if (const auto left_out = console_->take_left_out(); left_out > 0)
-    run.context.notices.push_back(fmt::format(
-        "{} samples were not shown: the output was not read in time; --csv has every sample", left_out));
-  if (const auto untold = console_->take_untold(); untold > 0)
-    run.context.notices.push_back(
-        fmt::format("{} messages were not shown: the output was not read in time", untold));
-  for (auto& error : errors) show::name_abort(run.context, error);
-  if (auto failure = bus_.take_trace_failure()) {
-    // The line was carried out; those that follow are too.
-    if (stays_open_) {
-      run.context.notices.push_back(failure->message + "; " + failure->hint);
-      incomplete_trace_ = std::move(failure);
-    } else {
-      errors.push_back(std::move(*failure));
-    }
-  }
+  tell_unread(*console_, run.context.notices);
+  for (auto& error : errors) show::name_abort(run.context.profile, run.settings.shows_chinese(), error);
+  tell_trace_failure(run);
   auto* session = run.context.session;
   const bool leaves_power = session != nullptr && !session->energised().empty();
   // A lost interface does not come back by itself: the next line opens it again.
-  if (!errors.empty() && errors.front().code == Errc::bus && session != nullptr) bus_.lose(*session);
+  if (is_lost) bus_.lose(*session);
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
   auto value = result ? *result : Value();
-  if (run.settings.shows_chinese() && !run.settings.names.empty()) put_into_chinese(run.context);
+  const auto node = errors.empty() ? std::nullopt : errors.front().node;
+  auto axis = std::string(node ? run.settings.names.of(*node) : std::string_view());
+  const auto* const of_family = run.line.chinese_names();
+  if (run.settings.shows_chinese()) put_into_chinese(run.context, of_family);
   name_axes_in(run.settings.names, run.context, value);
   return {.command = std::string(run.command->path),
           .settings = run.settings,
@@ -245,8 +227,11 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .result = std::move(value),
           .errors = std::move(errors),
           .notices = std::move(run.context.notices),
+          .told = run.settings.shows_chinese(),
           .leaves_power = leaves_power,
-          .abort_words = std::move(words)};
+          .abort_words = std::move(words),
+          .axis = std::move(axis),
+          .names = of_family != nullptr ? *of_family : report::Names()};
 }
 
 Result<std::unique_ptr<session::RingEnd>> Shell::open_ring_end(const Settings& settings) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -59,15 +60,36 @@ class Shell {
   std::unique_lock<std::recursive_mutex> take_turn() { return std::unique_lock(turn_); }
   /// What goes on is shown no longer: something else is.
   void end_progress() { progress_.end(); }
+  void show_progress(std::string_view line, TimePoint now) { progress_.update_line(line, now); }
+  void show_share(double share, TimePoint begin, TimePoint now) { progress_.update_share(share, begin, now); }
+  /// The line shows something of its own.
+  void note_output() { progress_.note_output(); }
+  /// While it lives a line is waited for, which is shown.
+  class ShownWait {
+   public:
+    explicit ShownWait(Shell& shell) : progress_(&shell.progress_) { progress_->begin(); }
+    ShownWait(const ShownWait&) = delete;
+    ShownWait& operator=(const ShownWait&) = delete;
+    ~ShownWait() {
+      progress_->end();
+      progress_->leave();
+    }
+
+   private:
+    Progress* progress_;
+  };
   /// Whether the user wants what is running to end.
   bool cancelled() const { return options_.cancelled && options_.cancelled(); }
 
   Settings& defaults() { return options_.defaults; }
   /// The bus as it is open now; null when none is.
   session::Session* session() { return bus_.session(); }
+  /// All that are open.
+  std::vector<session::Session*> sessions() const { return bus_.sessions(); }
   LastWrite& last_write() { return last_write_; }
-  /// As BusHolder::heard_state(), on the bus of this URL; nothing where it is not open.
-  HeardStates::State heard_state(std::string_view url, std::uint8_t node) const;
+  /// As BusHolder::heard_state(), on the bus of this URL; nothing where it is not open. `family`: empty where
+  /// it is not known.
+  HeardStates::State heard_state(std::string_view url, std::uint8_t node, const std::string& family);
   /// As BusHolder::opening().
   std::uint64_t opening(const session::Session& session) const { return bus_.opening(session); }
   /// The family of the lines that name none: that of the defaults, else what their one node was taken for;
@@ -87,8 +109,12 @@ class Shell {
   /// before.
   bool stay_open(bool stays) { return std::exchange(stays_open_, stays); }
   bool stays_open() const { return stays_open_; }
+  session::Protection::Hold protect(session::Care care) { return {&protection_, care}; }
   std::vector<std::uint8_t> energised_on(std::string_view url) const { return bus_.energised_on(url); }
+  bool has_adapter(std::string_view adapter) const { return bus_.has_adapter(adapter); }
+  Result<void> release_adapter(std::string_view adapter) { return bus_.release_adapter(adapter); }
   bool produces_sync() const { return bus_.produces_sync(); }
+  bool must_go_on() const { return bus_.must_go_on(); }
   /// As BusHolder::stop_sync().
   void stop_sync() { bus_.stop_sync(); }
   /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file
@@ -101,7 +127,10 @@ class Shell {
   int hold();
 
   /// As CabinetHolder::get().
-  Result<const cabinet::Cabinet*> cabinet(const Settings& settings) { return cabinet_.get(settings); }
+  Result<const cabinet::Cabinet*> cabinet(const Settings& settings);
+  /// What these nodes of the session's bus are taken for, for --verbose to name their objects.
+  void note_family(const session::Session& session, std::span<const std::uint8_t> nodes,
+                   const drive::Profile* profile);
 
   /// As parts_of(), with the cabinet file of the settings; none where there is no such file, or the line does
   /// not need it. Errors as there, and of the file.
@@ -138,7 +167,9 @@ class Shell {
     command::Context context;
     RunningLine line;
     bool family_found = false;  ///< The line does not name it.
-    std::string turn;           ///< As after --turn.
+    bool changes = false;       ///< It writes to drives.
+    bool family_guessed = false;
+    std::string turn;  ///< As after --turn.
   };
   /// What a node is taken for.
   struct FoundFamily {
@@ -149,11 +180,16 @@ class Shell {
   };
 
   session::Options session_options();
+  void show_wait(const session::Stretch* stretch, TimePoint now);
+  void tell_exchange(const session::Exchange& exchange);
+  void tell_order(const session::Session& session, std::uint8_t node, std::string_view order);
+  void tell_family(const Run& run);
   Outcome perform_parsed(const ParsedLine& line, const Settings& settings);
   struct PartRun;
   Result<void> check_parts(const ParsedLine& line, const std::vector<LinePart>& parts);
   std::vector<Outcome> perform_in_turn(const ParsedLine& line, std::vector<LinePart> parts);
   std::vector<Outcome> perform_side_by_side(const ParsedLine& line, std::vector<LinePart> parts);
+  std::vector<Outcome> perform_joined(const ParsedLine& line, std::vector<LinePart> parts);
   Outcome perform_part(const ParsedLine& line, LinePart part);
   Result<void> make_ready(Run& run, const command::Arguments& arguments);
   Result<void> prepare(Run& run, const command::Arguments& arguments);
@@ -162,7 +198,12 @@ class Shell {
   Result<const drive::Profile*> device_of_node(Run& run, const Error& why);
   Result<void> prepare_nodes(Run& run);
   static Result<void> hold_serials(Run& run);
+  void tell_trace_failure(Run& run);
+  bool tell_lost_bus(Run& run);
   void hear_second_node(const Run& run);
+  void tell_second_node(Run& run);
+  /// Lines about nodes that were written to before a second one of their number was noticed; each once.
+  std::vector<std::string> take_written_to_both(session::Session& session);
   /// The same for the last of several lines, before the bus is closed.
   void hear_last_line();
   static Result<void> name_nodes(Run& run);
@@ -186,11 +227,15 @@ class Shell {
   session::Protection protection_;
   BusHolder bus_;
   bool stays_open_ = false;
-  std::vector<std::uint8_t> unheard_;      ///< Nodes of the last line, a second of which may still answer.
+  std::vector<std::uint8_t> unheard_;  ///< Nodes of the last line, a second of which may still answer.
+  std::set<std::pair<std::uint64_t, std::uint8_t>> written_;  ///< Nodes, and the opening() of their bus.
   std::optional<Error> incomplete_trace_;  ///< Told as a notice of a line; the exit code comes at the end.
   std::map<std::string, std::shared_ptr<const drive::Profile>> profiles_;
   std::map<std::string, FoundFamily> families_;  ///< Of drives, by bus, node and restarts.
   CabinetHolder cabinet_;
+  bool cabinet_told_ = false;  ///< For --verbose, in this line.
+  /// By canonical_url() and node: the families that note_family() was told.
+  std::map<std::pair<std::string, std::uint8_t>, const drive::Profile*> noted_families_;
   LastWrite last_write_;
 };
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <list>
+#include <utility>
 #include <variant>
 
 #include "base/text.hpp"
@@ -20,7 +21,6 @@ using cabinet::Cabinet;
 using command::Effect;
 using command::Needs;
 using report::List;
-using report::Show;
 using report::Table;
 using report::Value;
 
@@ -33,13 +33,27 @@ bool may_name_bus(const std::string& bus) {
 Result<void> check_several(const command::Command& command, const command::Arguments& arguments,
                            const std::vector<LinePart>& parts) {
   if (parts.size() < 2) return {};
-  if (!command.goes_on && command.effect_with(arguments) != Effect::moves) return {};
   std::string first;
   for (const auto* axis : parts.front().axes) append(first, axis->name, ",");
-  return fail(Errc::usage,
-              fmt::format("'{}' is for axes of one bus and one family at a time; these are of {}",
-                          command.path, parts.size()),
-              first.empty() ? "name the bus: --bus " + parts.front().settings.bus : "such as -n " + first);
+  if (!command.one_file.empty() && arguments.has(command.one_file))
+    return fail(
+        Errc::usage,
+        fmt::format(
+            "'{}' writes {} for axes of one bus and one family at a time; these are of {} buses or families",
+            command.path, arguments.text(command.one_file), parts.size()),
+        command.path == "backup"
+            ? fmt::format("`cabinet backup` saves all axes; or a file each, such as -n {}", first)
+            : fmt::format("a file each, such as -n {}", first));
+  if (!command.goes_on && command.effect_with(arguments) != Effect::moves) return {};
+  return fail(
+      Errc::usage,
+      fmt::format("'{}' is for axes of one bus and one family at a time; these are of {} buses or families",
+                  command.path, parts.size()),
+      first.empty()     ? "name the bus: --bus " + parts.front().settings.bus
+      : command.goes_on ? fmt::format("it listens to one bus as it comes in: such as -n {}, and the "
+                                      "others in another terminal",
+                                      first)
+                        : "such as -n " + first);
 }
 
 /// Whether the parts are of several buses, and none of them asks: one question at a time. What may begin
@@ -86,73 +100,21 @@ void put_bus_into(Value& value, const std::string& bus) {
   }
 }
 
-/// Whether both are one column: a key stands once in a record, whatever the text of either shows.
-bool are_one(const Table::Column& a, const Table::Column& b) {
-  return a.key == b.key && (a.show == Show::text) == (b.show == Show::text);
-}
-
-/// The columns of both, those of the first before those that only the second has.
-void add_rows(Table& to, const Table& from) {
-  std::vector<std::size_t> places;
-  for (const auto& column : from.columns) {
-    auto at = std::find_if(to.columns.begin(), to.columns.end(),
-                           [&](const Table::Column& known) { return are_one(known, column); });
-    if (at == to.columns.end()) {
-      for (auto& row : to.rows) row.emplace_back();
-      to.columns.push_back(column);
-      at = to.columns.end() - 1;
-    }
-    if (at->show != column.show) at->show = Show::everywhere;
-    places.push_back(static_cast<std::size_t>(at - to.columns.begin()));
-  }
-  for (const auto& row : from.rows) {
-    List cells(to.columns.size());
-    for (std::size_t i = 0; i < row.size(); ++i) cells[places[i]] = row[i];
-    to.rows.push_back(std::move(cells));
-  }
-  to.documents.insert(to.documents.end(), from.documents.begin(), from.documents.end());
-  to.json_only = to.json_only && from.json_only;
-  to.below.insert(to.below.end(), from.below.begin(), from.below.end());
-}
-
-/// Tables become one, everything else a list.
-Value joined(Value all, Value more) {
-  if (all.is_null()) return more;
-  if (more.is_null()) return all;
-  auto* table = std::get_if<Table>(&all.data());
-  const auto* rows = std::get_if<Table>(&more.data());
-  if (table != nullptr && rows != nullptr) {
-    add_rows(*table, *rows);
-    return all;
-  }
-  List list;
-  for (auto* one : {&all, &more}) {
-    if (auto* inner = std::get_if<List>(&one->data()))
-      std::move(inner->begin(), inner->end(), std::back_inserter(list));
-    else
-      list.push_back(std::move(*one));
-  }
-  return list;
-}
-
-void add_outcome(Outcome& all, Outcome part) {
-  all.result = joined(std::move(all.result), std::move(part.result));
-  if (all.errors.empty()) all.abort_words = std::move(part.abort_words);
-  all.leaves_power = all.leaves_power || part.leaves_power;
-  std::move(part.errors.begin(), part.errors.end(), std::back_inserter(all.errors));
-  std::move(part.notices.begin(), part.notices.end(), std::back_inserter(all.notices));
-  if (("," + all.settings.bus + ",").find("," + part.settings.bus + ",") == std::string::npos)
-    append(all.settings.bus, part.settings.bus, ",");
-}
-
 }  // namespace
 
 std::vector<std::string> Shell::name_axes(std::vector<std::string> words, const CommandMatch& match) {
   if (match.command == nullptr || !includes(match.command->needs, Needs::node)) return words;
   const auto after = match.first + match.used;
   if (after >= words.size() || words[after].starts_with("-")) return words;
+  auto settings = options_.defaults;
+  for (std::size_t i = after; i < words.size(); ++i) {
+    constexpr std::string_view kOption = "--cabinet";
+    if (words[i] == kOption && i + 1 < words.size()) settings.cabinet = words[i + 1];
+    if (words[i].starts_with(std::string(kOption) + "="))
+      settings.cabinet = words[i].substr(kOption.size() + 1);
+  }
   // A file that cannot be used is told when an axis is needed; the word may be no axis.
-  const auto known = cabinet_.get(options_.defaults);
+  const auto known = cabinet_.get(settings);
   if (!known || *known == nullptr) return words;
   return with_axis_option(std::move(words), *match.command, after, **known);
 }
@@ -162,7 +124,7 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
   const bool needs_bus = includes(command.needs, Needs::bus) && settings.bus.empty();
   if (!names_axes(settings.nodes) && !needs_bus && !may_name_bus(settings.bus))
     return std::vector<LinePart>();
-  const auto known = cabinet_.get(settings);
+  const auto known = cabinet(settings);
   if (!known) return fail(known.error());
   if (*known == nullptr) return std::vector<LinePart>();
   auto parts = parts_of(**known, command, line.arguments, settings);
@@ -201,8 +163,10 @@ Outcome Shell::perform_parsed(const ParsedLine& line, const Settings& settings) 
   if (const auto right = check_parts(line, *parts); !right)
     return failed(right.error(), settings, line.command->path);
   const bool together = is_side_by_side(*line.command, line.arguments, *parts);
-  auto outcomes =
-      together ? perform_side_by_side(line, std::move(*parts)) : perform_in_turn(line, std::move(*parts));
+  const bool joins = line.command->joins && parts->size() > 1;
+  auto outcomes = joins      ? perform_joined(line, std::move(*parts))
+                  : together ? perform_side_by_side(line, std::move(*parts))
+                             : perform_in_turn(line, std::move(*parts));
   if (outcomes.size() > 1) last_write_.give_up(*line.command, "it went to several buses or families");
   auto all = std::move(outcomes.front());
   for (std::size_t i = 1; i < outcomes.size(); ++i) add_outcome(all, std::move(outcomes[i]));
@@ -272,6 +236,28 @@ std::vector<Outcome> Shell::perform_side_by_side(const ParsedLine& line, std::ve
     for (auto& error : out.back().errors) one.name_file(error);
     if (one.of_bus) put_bus_into(out.back().result, out.back().settings.bus);
   }
+  return out;
+}
+
+/// One run for all parts. What cannot be made ready ends the line before anything is done.
+std::vector<Outcome> Shell::perform_joined(const ParsedLine& line, std::vector<LinePart> parts) {
+  std::list<PartRun> runs;
+  std::vector<command::Context*> others;
+  for (auto& part : parts) {
+    runs.emplace_back(*this, line, std::move(part));
+    if (runs.back().result) return {finish(runs.back().run, *runs.back().result)};
+    if (runs.size() > 1) others.push_back(&runs.back().run.context);
+  }
+  auto& front = runs.front();
+  front.run.context.others = others;
+  front.carry_out();
+  progress_.end();
+  // A bus that was lost is the one of its own part.
+  for (auto& one : runs)
+    if (&one.run.context == front.run.context.failed)
+      one.result = std::exchange(front.result, Result<Value>(Value()));
+  std::vector<Outcome> out;
+  for (auto& one : runs) out.push_back(finish(one.run, one.result ? *one.result : Result<Value>(Value())));
   return out;
 }
 

@@ -33,14 +33,18 @@ bool asks_a_drive(const Settings& settings, const command::Command& command) {
 }  // namespace
 
 Result<void> Shell::prepare_profile(Run& run, bool changes) {
-  if (equals_nocase(run.settings.drive, kOnline) || asks_a_drive(run.settings, *run.command))
-    return ask_drive(run);
+  if (equals_nocase(run.settings.drive, kOnline) || asks_a_drive(run.settings, *run.command)) {
+    const auto asked = ask_drive(run);
+    if (asked && console_->is_verbose()) tell_family(run);
+    return asked;
+  }
   if (run.settings.drive.empty())
     if (const auto found = find_family(run, changes); !found) return found;
   auto loaded = profile(run.settings.drive);
   if (!loaded) loaded = device_of_node(run, loaded.error());
   if (!loaded) return fail(loaded.error());
   run.context.profile = *loaded;
+  if (console_->is_verbose()) tell_family(run);
   for (const auto& warning : (*loaded)->warnings) run.context.notices.push_back(warning);
   return {};
 }

@@ -77,10 +77,13 @@ std::string Shell::family_text() const {
   return taken == nullptr ? options_.defaults.drive : taken->family + (taken->guessed ? "?" : "");
 }
 
-HeardStates::State Shell::heard_state(std::string_view url, std::uint8_t node) const {
+HeardStates::State Shell::heard_state(std::string_view url, std::uint8_t node, const std::string& family) {
   const auto wanted = session::canonical_url(url);
+  const auto data = [&]() -> const drive::Profile* {
+    return family.empty() ? nullptr : profile(family).value_or(nullptr);
+  };
   for (auto* session : bus_.sessions())
-    if (session::canonical_url(session->url()) == wanted) return bus_.heard_state(*session, node);
+    if (session::canonical_url(session->url()) == wanted) return bus_.heard_state(*session, node, data);
   return {};
 }
 
@@ -142,7 +145,7 @@ std::string Shell::no_family_hint() const {
   std::vector<std::string> names;
   for (const auto& family : drive::find_families(options_.drive_folders)) names.push_back(family.name);
   return names.empty() ? std::string("add -d FILE.eds or -d FILE.xml")
-                       : "add -d " + one_of(names) + ", or -d with an .eds or .xml file";
+                       : fmt::format("add -d {}, or -d with an .eds or .xml file", one_of(names));
 }
 
 /// Says what the drives of the line are, where that can be found out.
@@ -171,6 +174,7 @@ Result<void> Shell::find_family(Run& run, bool changes) {
   }
   run.settings.drive = family;
   run.family_found = true;
+  run.family_guessed = families_.at(key_of(**opened, nodes->front())).guessed;
   return {};
 }
 

@@ -1,9 +1,35 @@
+#include <fmt/format.h>
+#include <algorithm>
+#include <variant>
+
 #include "base/printable.hpp"
 #include "cli/shell.hpp"
 #include "session/identify.hpp"
 #include "show/notice.hpp"
 
 namespace servoctl::cli {
+
+namespace {
+
+/// What a node answered was not what belongs to the request; or it took a segment as out of turn.
+bool is_out_of_turn(const Error& error) {
+  const auto kind = error.abort_code.value_or(0) >> 16U;
+  return error.code == Errc::protocol || kind == 0x0503 || kind == 0x0504;
+}
+
+/// Two that answer at once break transfers, and one refuses what the other has: that there are two is the
+/// cause to be told.
+void blame_second_node(session::Session& session, Error& error) {
+  if (!error.node || (error.code != Errc::protocol && error.code != Errc::sdo_abort)) return;
+  const std::uint8_t nodes[] = {*error.node};
+  if (is_out_of_turn(error)) (void)session::settle_duplicates(session, nodes, session::kThoroughly);
+  if (session::refuse_duplicate(session, *error.node)) return;
+  error.hint =
+      "two nodes answer with this node-ID, which is the likely cause: disconnect one and give it another node-ID, then "
+      "`scan`";
+}
+
+}  // namespace
 
 using command::Needs;
 
@@ -14,8 +40,12 @@ std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool
     for (const auto& notice : session->network().take_notices()) out.push_back(names.in(notice));
     // The family of the line says nothing of another bus.
     const auto* family = session == bus_.session() ? profile : nullptr;
-    for (const auto& event : session->take_events())
-      out.push_back(names.in(show::notice_text(event, family, chinese, &session->network())));
+    for (const auto& event : session->take_events()) {
+      auto text = names.in(show::notice_text(event, family, chinese, &session->network()));
+      // Whoever looks anew at a node sees the same two again; other events may well come twice.
+      const bool doubled = std::holds_alternative<session::NodeEvent::Doubled>(event.what);
+      if (!doubled || std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));
+    }
   }
   return out;
 }
@@ -34,11 +64,60 @@ void Shell::hear_second_node(const Run& run) {
   (void)session::settle_duplicates(*session, run.context.nodes, session::kBriefly);
 }
 
+/// Whether the bus of the line was lost. It is told where the line asked for something that it can do
+/// without.
+bool Shell::tell_lost_bus(Run& run) {
+  auto& errors = run.context.errors;
+  auto* session = run.context.session;
+  const auto of_bus = [](const Error& error) { return error.code == Errc::bus; };
+  if (session == nullptr) return false;
+  if (std::any_of(errors.begin(), errors.end(), of_bus)) return of_bus(errors.front());
+  const auto heard = session->can() == nullptr ? Result<void>() : session->listen();
+  if (heard || !of_bus(heard.error())) return false;
+  errors.push_back(heard.error());
+  return true;
+}
+
+/// What it may have done to the line: broken its transfers, or taken what was written.
+void Shell::tell_second_node(Run& run) {
+  auto* session = run.context.session;
+  if (session == nullptr || cancelled()) return;
+  auto& errors = run.context.errors;
+  for (auto& error : errors) blame_second_node(*session, error);
+  if (run.changes && (errors.empty() || errors.front().code != Errc::refused))
+    for (const auto node : run.context.nodes) written_.emplace(opening(*session), node);
+  for (auto& text : take_written_to_both(*session)) run.context.notices.push_back(std::move(text));
+}
+
+std::vector<std::string> Shell::take_written_to_both(session::Session& session) {
+  std::vector<std::string> out;
+  std::erase_if(written_, [&, here = opening(session)](const auto& written) {
+    const auto [where, node] = written;
+    if (where != here || session::refuse_duplicate(session, node)) return false;
+    out.push_back(fmt::format(
+        "node {}: what was written may have gone to both drives: read it back from each alone", node));
+    return true;
+  });
+  return out;
+}
+
+/// The line was carried out; those that follow are too.
+void Shell::tell_trace_failure(Run& run) {
+  auto failure = bus_.take_trace_failure();
+  if (!failure) return;
+  if (!stays_open_) return run.context.errors.push_back(std::move(*failure));
+  run.context.notices.push_back(failure->message + "; " + failure->hint);
+  incomplete_trace_ = std::move(failure);
+}
+
 void Shell::hear_last_line() {
   auto* session = bus_.session();
   if (session == nullptr || unheard_.empty() || cancelled()) return;
   (void)session::settle_duplicates(*session, unheard_, session::kBriefly);
   tell_notices();
+  const auto& names = bus_.names(*session);
+  for (const auto& text : take_written_to_both(*session))
+    console_->note("notice: " + printable(names.in(text)) + "\n");
 }
 
 void Shell::tell_notices() {
@@ -47,6 +126,11 @@ void Shell::tell_notices() {
       settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : profile(settings.drive);
   for (const auto& notice : take_notices(family ? *family : nullptr, settings.chinese))
     console_->note("notice: " + printable(notice) + "\n");
+}
+
+/// Who shows something, or asks, keeps no bus waiting.
+void Shell::show_wait(const session::Stretch* stretch, TimePoint now) {
+  if (const std::unique_lock turn(turn_, std::try_to_lock); turn) progress_.update_wait(stretch, now);
 }
 
 }  // namespace servoctl::cli

@@ -1,13 +1,16 @@
 #include "cli/tab_answer.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 
 #include "base/number.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/terminal/begun_line.hpp"
 #include "cli/terminal/completer.hpp"
+#include "report/catalogue.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -67,11 +70,35 @@ std::string for_fish(const Tab& tab) {
   return in_lines(tab, lines);
 }
 
-/// As _describe reads it, `word:what it is`; before it a `+` where the word goes on, else a `-`.
-std::string for_zsh(const Tab& tab) {
+/// What zsh calls the group, and what stands above it.
+struct Heading {
+  Candidate::Group group;
+  std::string_view tag;
+  std::string_view english;
+};
+constexpr Heading kHeadings[] = {{Candidate::Group::commands, "commands", "commands and groups"},
+                                 {Candidate::Group::places, "places", "nodes and axes"},
+                                 {Candidate::Group::parameters, "parameters", "panel parameters"},
+                                 {Candidate::Group::objects, "objects", "objects"},
+                                 {Candidate::Group::values, "values", "values"},
+                                 {Candidate::Group::options, "options", "options"}};
+
+/// As _describe reads it, `word:what it is`; before it its group, and a `+` where the word goes on, else a
+/// `-`. A line `=commands heading` for each group first.
+std::string for_zsh(const Tab& tab, bool chinese) {
   std::vector<std::string> lines;
+  for (const auto& heading : kHeadings) {
+    const bool any = std::any_of(tab.candidates.begin(), tab.candidates.end(),
+                                 [&](const Candidate& one) { return one.group == heading.group; });
+    if (any)
+      lines.push_back(
+          fmt::format("={} {}", heading.tag,
+                      chinese ? report::in_chinese(heading.english) : std::string(heading.english)));
+  }
   for (const auto& one : tab.candidates) {
-    std::string word = word_goes_on(one.word) ? "+" : "-";
+    const auto* heading = std::find_if(std::begin(kHeadings), std::end(kHeadings),
+                                       [&](const Heading& each) { return each.group == one.group; });
+    auto word = fmt::format("{}{}", heading->tag, word_goes_on(one.word) ? "+" : "-");
     for (const char c : one.word) word += c == ':' || c == '\\' ? std::string("\\") + c : std::string(1, c);
     lines.push_back(one.hint.empty() ? word : word + ":" + one.hint);
   }
@@ -152,7 +179,7 @@ std::string answer_tab(std::span<const std::string> question, Shell& shell) {
   const auto begun = begun_line(question[1], {}, fish ? LineSyntax::fish : LineSyntax::zsh);
   const auto tab = find_words(words, begun.last, shell, fish);
   if (fish) return for_fish(tab);
-  return question[0] == "zsh" ? for_zsh(tab) : std::string();
+  return question[0] == "zsh" ? for_zsh(tab, shell.defaults().chinese) : std::string();
 }
 
 }  // namespace servoctl::cli

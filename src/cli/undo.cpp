@@ -77,15 +77,20 @@ Result<void> check_line(Shell& shell, const WrittenLine& line) {
 
 std::string undo_question(const WrittenLine& line) {
   std::string out;
-  for (const auto& value : line.values)
-    out += fmt::format("{}{} on {}{}: {} in place of {}", out.empty() ? "" : "; ", value.name,
-                       value.target == std::to_string(value.node) ? "node " : "", value.target,
-                       value.before_text, value.after_text.empty() ? "what was written" : value.after_text);
+  for (const auto& value : line.values) {
+    if (!out.empty()) out += "; ";
+    const auto after = value.after_shown.empty() ? "what was written" : value.after_shown;
+    out +=
+        value.target == std::to_string(value.node)
+            ? fmt::format("{} on node {}: {} in place of {}", value.name, value.node, value.before_shown,
+                          after)
+            : fmt::format("{} on {}: {} in place of {}", value.name, value.target, value.before_shown, after);
+  }
   const bool blind = std::any_of(line.values.begin(), line.values.end(),
                                  [](const WrittenValue& value) { return value.identity.by_registers; });
-  return fmt::format("{}Put back{} {}?",
-                     blind ? "Over Modbus nothing tells whether it is the same drive. " : "",
-                     line.keep ? ", and keep at power-off," : "", out);
+  return std::string(blind ? "Over Modbus nothing tells whether it is the same drive. " : "") +
+         (line.keep ? fmt::format("Put back, and keep at power-off, {}?", out)
+                    : fmt::format("Put back {}?", out));
 }
 
 Result<void> confirm_undo(Shell& shell, const WrittenLine& line, bool yes) {

@@ -14,8 +14,8 @@ class Splitter {
     for (at_ = 0; at_ < line_.size() && !comment_; ++at_)
       if (const auto taken = take(line_[at_]); !taken) return fail(taken.error());
     if (quote_ == '\0') return std::move(words_);
-    return fail(Errc::usage, std::string("the quote ") + quote_ + " is not closed",
-                "close it, or write \\" + std::string(1, quote_));
+    return fail(Errc::usage, fmt::format("the quote {} is not closed", quote_),
+                fmt::format("close it, or write \\{}", quote_));
   }
 
  private:

@@ -92,6 +92,7 @@ struct Command {
   Needs needs = Needs::nothing;
   Effect effect = Effect::none;
   FamilyCheck family = FamilyCheck::by_effect;
+  std::string_view families_in = {};  ///< The file of this parameter may name the families: then -d need not.
   std::string_view reads_without = {};  ///< Without this parameter it only reads, whatever `effect` says.
   Result<report::Value> (*run)(Context&, const Arguments&) = nullptr;
   /// Checks names and values by the dictionary alone (no session in the context), for lines that are to be
@@ -107,6 +108,9 @@ struct Command {
   bool opens_bus = false;     ///< Its words decide which end of the bus it needs: it opens it itself.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
   bool goes_on = false;       ///< It shows what comes until it is ended: one bus and family at a time.
+  /// The word or option that names a file it writes whole: a second bus or family would replace it.
+  std::string_view one_file = {};
+  bool joins = false;  ///< One run for all buses and families of a line: Context::others.
   /// It works where drives are known by registers alone (Modbus): without the objects of CiA 301 and CiA 402.
   bool on_registers = false;
   /// What there is instead of it on a network of another kind, for a hint; empty: nothing.

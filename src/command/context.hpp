@@ -16,8 +16,10 @@ struct Context : show::Desk {
   std::vector<const cabinet::Axis*> axes;  ///< That the nodes are; empty where they are just nodes.
   bool nodes_typed = false;                ///< In the line itself; else by `use` or the environment.
   bool read_only = false;                  ///< Nothing in a drive may be changed.
-  bool stays_open = false;        ///< Other lines follow on the same session: a prompt, a batch file.
-  FrontEnd* front_end = nullptr;  ///< Null: there is none, and nothing is held.
+  bool stays_open = false;                ///< Other lines follow on the same session: a prompt, a batch file.
+  FrontEnd* front_end = nullptr;          ///< Null: there is none, and nothing is held.
+  std::span<Context* const> others = {};  ///< The other buses and families of the line (Command::joins).
+  Context* failed = nullptr;  ///< Of `others`, the one whose bus ended the run.
 
   /// As FrontEnd::hold_family().
   Result<void> hold_family(std::span<const std::uint8_t> of, const drive::Profile* family,

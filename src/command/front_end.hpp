@@ -32,8 +32,15 @@ class FrontEnd : public settings::LineReader {
   virtual Result<session::Session*> open_bus(const cabinet::Cabinet& cabinet, const cabinet::Bus& bus) = 0;
   /// The URL of the bus of the line; empty when it names none.
   virtual std::string_view bus_url() const = 0;
-  /// The nodes that were left energised over this bus, which is open now or was lost.
+  /// While it lives a second signal does not end the process; the first one is heard.
+  virtual session::Protection::Hold protect() = 0;
+  /// The nodes that were left energised over this bus or adapter, which is open now or was lost.
   virtual std::vector<std::uint8_t> energised_on(std::string_view url) const = 0;
+  /// Whether a bus that is open has this adapter: `slcan:/dev/ttyACM0`.
+  virtual bool has_adapter(std::string_view adapter) const = 0;
+  /// Closes it, so that the port is free; the next line that needs it opens it again. Errc::refused where
+  /// drives are energised over it.
+  virtual Result<void> release_adapter(std::string_view adapter) = 0;
   /// Opens the slaves' end of the bus of the line, which is one with EtherCAT; errors as
   /// session::open_ring_end().
   virtual Result<std::unique_ptr<session::RingEnd>> open_ring_end() = 0;

@@ -6,6 +6,8 @@ namespace {
 
 constexpr std::string_view kLanguages[] = {"en", "zh"};
 
+constexpr std::string_view kColours[] = {"auto", "always", "never"};
+
 constexpr Parameter kGlobal[] = {
     {.name = "--bus",
      .help =
@@ -38,11 +40,22 @@ constexpr Parameter kGlobal[] = {
      .help = "language of what people read: en or zh (default $SERVOCTL_LANG)",
      .kind = Kind::choice,
      .choices = kLanguages},
+    {.name = "--color",
+     .help = "colours: auto (on a terminal, unless NO_COLOR is set), always or never",
+     .kind = Kind::choice,
+     .choices = kColours},
+    {.name = "--no-pager",
+     .help = "no pager for what is longer than the window (default $SERVOCTL_PAGER, $PAGER, less -FRX)",
+     .kind = Kind::flag},
     {.name = "--yes", .help = "answer yes to every question", .kind = Kind::flag, .short_name = "-y"},
     {.name = "--quiet",
      .help = "no notices and no progress on stderr; errors stay",
      .kind = Kind::flag,
      .short_name = "-q"},
+    {.name = "--verbose",
+     .help = "tell on stderr what is done: bus, family, each object that is read or written",
+     .kind = Kind::flag,
+     .short_name = "-v"},
     {.name = "--force-family",
      .help = "continue although the drive's identity contradicts -d; --yes does not imply it",
      .kind = Kind::flag},

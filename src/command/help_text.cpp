@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "base/text.hpp"
@@ -33,8 +34,8 @@ class HelpPage {
   HelpPage(std::size_t width, bool chinese) : width_(width), chinese_(chinese) {}
 
   std::string of(const Command& command) const {
-    auto out = fmt::format("servoctl {}\n\n{}\n", usage_line(command.path),
-                           chinese_ ? sentence(command.summary) : std::string(command.summary) + ".");
+    auto out = fmt::format("{}\n\n{}\n", wrapped("servoctl " + usage_line(command.path), 4, width_),
+                           sentence(command.summary));
     if (!command.details.empty()) out += "\n" + wrapped(said(command.details), 0, width_) + "\n";
     if (const auto words = rows(command.parameters, false); !words.empty())
       out += "\n" + said("Arguments:") + "\n" + words;
@@ -54,8 +55,31 @@ class HelpPage {
                        group.empty() ? "" : fmt::format("\nservoctl {} …\n\n{}", word.name, group));
   }
 
+  /// What it does, and for which commands, where that differs; empty where none has it.
+  std::string of_option(std::string_view name) const {
+    std::vector<std::pair<const Parameter*, std::string>> found;
+    const auto look = [&](std::span<const Parameter> parameters, std::string_view command) {
+      for (const auto& one : parameters) {
+        if (one.name != name && (one.short_name.empty() || one.short_name != name)) continue;
+        auto same = std::find_if(found.begin(), found.end(),
+                                 [&](const auto& each) { return each.first->help == one.help; });
+        if (same == found.end()) same = found.insert(found.end(), {&one, {}});
+        append(same->second, command);
+      }
+    };
+    look(global_options(), {});
+    for (const auto* command : registry()) look(command->parameters, command->path);
+    std::string out;
+    for (const auto& [parameter, commands] : found) {
+      const auto heading = commands.empty() ? "Options of every command:" : "Options:";
+      out += (out.empty() ? "" : "\n") + said(heading) + "\n" + rows(std::span(parameter, 1), true);
+      if (!commands.empty()) out += row("", commands);
+    }
+    return out;
+  }
+
   std::string of_program() const {
-    return said("servoctl: commissions CANopen servo drives from a terminal") + "\n\n" +
+    return wrapped(said("servoctl: commissions CANopen servo drives from a terminal"), 2, width_) + "\n\n" +
            usage("  servoctl [OPTIONS] COMMAND …    ", "run one command") +
            usage("  servoctl [OPTIONS]              ", "the prompt; also reads command lines from a pipe") +
            usage("  servoctl [OPTIONS] -            ", "a batch file from standard input (see `help run`)") +
@@ -82,18 +106,21 @@ class HelpPage {
 
   /// With its full stop.
   std::string sentence(std::string_view text) const {
-    return chinese_ ? wrapped(said(text) + "。", 0, width_) : wrapped(text, 0, width_) + ".";
+    return wrapped(said(text) + (chinese_ ? "。" : "."), 0, width_);
   }
 
   std::string usage(std::string_view line, std::string_view what) const {
-    return std::string(line) + said(what) + "\n";
+    if (display_width(line) + display_width(said(what)) <= width_)
+      return std::string(line) + said(what) + "\n";
+    return std::string(line.substr(0, line.find_last_not_of(' ') + 1)) + "\n      " +
+           wrapped(said(what), 6, width_) + "\n";
   }
 
   std::string end() const {
     constexpr std::string_view kEnd =
         "`help COMMAND` shows more, with examples. Exit codes: 0 done, 1 negative result, 2 usage, 3 bus, 4 no "
-        "answer,\n5 refused by the drive, 6 protocol error, 7 file, 8 refused for safety, 70 a bug, 130 Ctrl-C.";
-    return chinese_ ? wrapped(said(kEnd), 0, width_) : std::string(kEnd);
+        "answer, 5 refused by the drive, 6 protocol error, 7 file, 8 refused for safety, 70 a bug, 130 Ctrl-C.";
+    return wrapped(said(kEnd), 0, width_);
   }
 
   std::string rows(std::span<const Parameter> parameters, bool options) const {
@@ -101,7 +128,7 @@ class HelpPage {
     for (const auto& parameter : parameters) {
       if (parameter.name.starts_with("-") != options) continue;
       const auto left = options ? option_words(parameter) : value_word(parameter);
-      out += "  " + pad_right(left, 22) + " " + wrapped(said(parameter.help), 25, width_) + "\n";
+      out += row(left, parameter.help);
     }
     return out;
   }
@@ -117,9 +144,17 @@ class HelpPage {
 
   std::string word_rows() const {
     std::string out;
-    for (const auto& word : prompt_words())
-      out += "  " + pad_right(prompt_usage(word), 22) + " " + wrapped(said(word.summary), 25, width_) + "\n";
+    for (const auto& word : prompt_words()) out += row(prompt_usage(word), word.summary);
     return out;
+  }
+
+  /// What it is stands behind it, or below what is too long for that.
+  std::string row(const std::string& left, std::string_view what) const {
+    constexpr std::size_t kLeft = 22;
+    constexpr std::size_t kIndent = kLeft + 3;
+    const auto right = wrapped(said(what), kIndent, width_) + "\n";
+    return display_width(left) > kLeft ? "  " + left + "\n" + std::string(kIndent, ' ') + right
+                                       : "  " + pad_right(left, kLeft) + " " + right;
   }
 
   std::size_t width_;
@@ -157,6 +192,8 @@ Result<std::string> help_text(std::string_view path, std::size_t width, bool chi
   if (const auto* word = find_prompt_word(path)) return page.of(*word);
   if (const auto group = page.command_rows(path); !group.empty())
     return fmt::format("servoctl {} …\n\n{}", path, group);
+  if (auto option = path.starts_with('-') ? page.of_option(path) : std::string(); !option.empty())
+    return option;
   std::vector<std::string> names;
   for (const auto* command : registry()) names.emplace_back(command->path);
   for (const auto& word : prompt_words()) names.emplace_back(word.name);

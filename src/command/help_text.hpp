@@ -8,8 +8,8 @@
 
 namespace servoctl::command {
 
-/// Help of one command, of a group (`param`), of a word of the prompt (`undo`), or of the program when `path`
-/// is empty, in at most `width` columns (0: 100). Errc::usage for an unknown name.
+/// Help of one command, of a group (`param`), of a word of the prompt (`undo`), of an option (`--for`), or of
+/// the program when `path` is empty, in at most `width` columns (0: 100). Errc::usage for an unknown name.
 Result<std::string> help_text(std::string_view path, std::size_t width, bool chinese = false);
 
 /// Whether the command reads this option itself although every command has one of the name.

@@ -39,6 +39,16 @@ constexpr Entry kManualEnvironment[] = {
     {"SERVOCTL_LANG",
      "The language of names where there is no `--lang`: `zh` is Chinese, anything else English. Where it is "
      "empty, the language is Chinese when `LANG` begins with zh."},
+    {"SERVOCTL_PAGER",
+     "The program that shows what is longer than the window of the terminal, as a shell takes it, where there "
+     "is no `--no-pager`; where it is not set, `PAGER`, else `less -FRX` where there is less. None where it is "
+     "empty or `cat`; nor at the prompt, where the bus goes on meanwhile, for batch files, in a pipe, for JSON, "
+     "for what comes bit by bit such as `watch`, and while a drive is energised. The bus is closed before it "
+     "starts, and the exit code is that of the command."},
+    {"PAGER", "See `SERVOCTL_PAGER`."},
+    {"LESS", "Where it is not set the pager gets `FRX`."},
+    {"LESSCHARSET", "Where it is not set the pager gets `utf-8`."},
+    {"PATH", "Where `less` and `man` are looked for."},
     {"SERVOCTL_DRIVES",
      "Folders with the data of drive families, separated by colons. They are looked through before those "
      "named in FILES."},
@@ -48,9 +58,12 @@ constexpr Entry kManualEnvironment[] = {
      "The folder for the sockets of `local:` buses, if it belongs to the user. Otherwise they are in "
      "`/run/user/UID/servoctl` or `/tmp/servoctl-UID`."},
     {"HOME", "Where `~` is."},
-    {"LANG", "See `SERVOCTL_LANG`."},
-    {"NO_COLOR", "The prompt has no colours where it is set and not empty."},
-    {"TERM", "Where it is empty or `dumb` the prompt has no line editor."},
+    {"LANG",
+     "See `SERVOCTL_LANG`. Where it, `LC_CTYPE` or `LC_ALL` (the last has precedence) names a locale without "
+     "UTF-8, such as C, English text is ASCII; JSON, and Chinese where it was asked for, stay UTF-8."},
+    {"NO_COLOR",
+     "Text has no colours where it is set and not empty, unless `--color always` says otherwise."},
+    {"TERM", "Where it is empty or `dumb` the prompt has no line editor, and text no colours."},
     {"SOURCE_DATE_EPOCH",
      "Seconds since 1970 that stand for the present time in the files that are written, so that they can be "
      "made the same again."},

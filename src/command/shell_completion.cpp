@@ -15,8 +15,16 @@ _servoctl() {
   case ${COMP_WORDS[COMP_CWORD-1]} in
     *'>' | *'<' | *'>|') COMPREPLY=(); compopt -o default; return ;;
   esac
+  # A word before the cursor that is a variable stands for its value; nothing else is expanded.
+  local line=${COMP_LINE:0:COMP_POINT} before name
+  before=${line%[[:blank:]]*}
+  line=${line:${#before}}
+  while [[ "$before " =~ ^(.*[[:blank:]])\"?\$\{?([A-Za-z_][A-Za-z0-9_]*)\}?\"?([[:blank:]].*)$ ]]; do
+    name=${BASH_REMATCH[2]}
+    before=${BASH_REMATCH[1]}$(printf %q "${!name}")${BASH_REMATCH[3]% }
+  done
   mapfile -t answer < <("$program" __complete bash "${COMP_TYPE:-9}" "${COLUMNS:-80}" "$COMP_WORDBREAKS" \
-    "${COMP_LINE:0:COMP_POINT}" 2>/dev/null)
+    "$before$line" 2>/dev/null)
   COMPREPLY=("${answer[@]:1}")
   case ${answer[0]-} in
     files) compopt -o default ;;
@@ -34,17 +42,30 @@ constexpr std::string_view kZsh = R"sh(#compdef servoctl
 _servoctl() {
   local program=servoctl
   [[ ${(Q)words[1]} == */* && -x ${(Q)words[1]} ]] && program=${(Q)words[1]}
-  local -a answer ready open
-  answer=("${(@f)$("$program" __complete zsh "$QIPREFIX$PREFIX" "${(@Q)words[2,CURRENT-1]}" 2>/dev/null)}")
+  local -a answer ready open given match mbegin mend
+  local heading tag
+  given=("${(@Q)words[2,CURRENT-1]}")
+  # A word that is a variable stands for its value; nothing else is expanded.
+  local i
+  for ((i = 1; i <= $#given; ++i)); do
+    [[ $given[i] =~ '^\$\{?([A-Za-z_][A-Za-z0-9_]*)\}?$' ]] && given[i]=${(P)match[1]}
+  done
+  answer=("${(@f)$("$program" __complete zsh "$QIPREFIX$PREFIX" "${(@)given}" 2>/dev/null)}")
   case ${answer[1]} in
     files) _files; return ;;
     note*) _message -r "${answer[1]#note }"; return ;;
   esac
   shift answer
-  ready=(${${(M)answer:#-*}#-})
-  open=(${${(M)answer:#+*}#+})
   local -a as=(-M 'm:{a-zA-Z}={A-Za-z}')
-  _describe -V 'servoctl' ready $as -- open $as -S ''
+  local ret=1
+  for heading in ${${(M)answer:#=*}#=}; do
+    tag=${heading%% *}
+    ready=(${${(M)answer:#$tag-*}#$tag-})
+    open=(${${(M)answer:#$tag+*}#$tag+})
+    heading=${heading#* }
+    _describe -t $tag -V "$heading" ready $as -- open $as -S '' && ret=0
+  done
+  return ret
 }
 
 if [ "$funcstack[1]" = "_servoctl" ]; then
@@ -63,6 +84,12 @@ function __servoctl_complete
     set -l program servoctl
     string match -q -- '*/*' $words[1]; and test -x $words[1]; and set program $words[1]
     set -e words[1]
+    # A word that is a variable stands for its value; nothing else is expanded.
+    for i in (seq (count $words))
+        set -l name (string replace -rf -- '^"?\{?\$([A-Za-z_][A-Za-z0-9_]*)\}?"?$' '$1' $words[$i])
+        and set -q $name
+        and set words[$i] "$$name"
+    end
     set -l answer ($program __complete fish "$begun" $words 2>/dev/null)
     switch "$answer[1]"
         case 'note*'

@@ -68,6 +68,12 @@ std::vector<std::uint32_t> bitrates_of(const Profile& profile) {
   return out;
 }
 
+std::optional<std::uint32_t> bitrate_of_code(const Profile& profile, std::int64_t code) {
+  for (const auto& known : codes_of(profile))
+    if (known.value == code) return known.bitrate;
+  return std::nullopt;
+}
+
 Result<std::int64_t> bitrate_code(const Profile& profile, std::uint32_t bitrate) {
   const auto& name = profile.rules.nmt.bitrate;
   if (name.empty())
@@ -86,7 +92,7 @@ Result<std::int64_t> bitrate_code(const Profile& profile, std::uint32_t bitrate)
   std::vector<std::string> known;
   for (const auto each : bitrates_of(profile)) known.push_back(bitrate_text(each));
   return fail(Errc::usage, fmt::format("a {} has no {}", profile.family, bitrate_text(bitrate)),
-              "it has " + fmt::to_string(fmt::join(known, ", ")));
+              fmt::format("it has {}", fmt::join(known, ", ")));
 }
 
 }  // namespace servoctl::drive

@@ -24,4 +24,7 @@ std::vector<std::uint32_t> bitrates_of(const Profile& profile);
 /// no such parameter, or its codes are not known.
 Result<std::int64_t> bitrate_code(const Profile& profile, std::uint32_t bitrate);
 
+/// The other way round; empty for a code that is not known.
+std::optional<std::uint32_t> bitrate_of_code(const Profile& profile, std::int64_t code);
+
 }  // namespace servoctl::drive

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/unit.hpp"
 
@@ -51,7 +52,7 @@ std::optional<std::string> in_revolutions(const LoadUnit& load, std::string_view
     const auto to = length(load.unit);
     if (what != load.unit && (!from || !to)) continue;
     const double ratio = what == load.unit ? 1 : *from / *to;
-    return fmt::format("{:.15g}rev{}", number * ratio / load.per_rev, per);
+    return fmt::format("{}rev{}", plain_number(number * ratio / load.per_rev, 15), per);
   }
   return std::nullopt;
 }

@@ -107,18 +107,28 @@ bool ends_in_own_unit(const Meaning& meaning, std::string_view text) {
          split_unit(text).has_value();
 }
 
+/// 60FEh has levels, and which of them are set at all.
+bool is_of_bits(ObjectAddress object) {
+  return object == objects::kControlword || object == objects::kStatusword ||
+         object == objects::kDigitalInputs ||
+         (object.index == objects::kDigitalOutputsIndex && object.sub != 0);
+}
+
 }  // namespace
 
 std::string plain_text(const Meaning& meaning, const od::Value& value) {
-  if (const auto* word = std::get_if<std::uint64_t>(&value); word != nullptr && meaning.bits)
-    return fmt::format("0x{:04X}", *word);
+  if (const auto* word = std::get_if<std::uint64_t>(&value); word != nullptr && meaning.bits) {
+    const std::size_t bytes = *word > 0xFFFFU ? 4 : 2;
+    return fmt::format("0x{:0{}X}", *word,
+                       2 * (meaning.type_known ? od::size_of(meaning.type).value_or(bytes) : bytes));
+  }
   return meaning.encoding == od::Encoding::plain ? od::to_string(value)
-                                                 : fmt::format("{:.12g}", scaled(meaning, value));
+                                                 : plain_number(scaled(meaning, value), 12);
 }
 
 Meaning meaning(const Target& target, std::uint8_t node) {
   Meaning out;
-  out.bits = target.address == objects::kControlword || target.address == objects::kStatusword;
+  out.bits = is_of_bits(target.address);
   if (target.parameter != nullptr) {
     const auto& parameter = *target.parameter;
     out.type = parameter.type;

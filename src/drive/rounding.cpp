@@ -16,8 +16,11 @@ std::string with_unit(double number, const std::string& unit) {
 
 std::string to_string(const Rounding& rounding) {
   const auto& unit = rounding.unit;
-  auto out = fmt::format("{} is {}", with_unit(rounding.asked, unit), with_unit(rounding.held, unit));
-  return rounding.step == 0 ? out : out + ": one step is " + with_unit(rounding.step, unit);
+  const auto asked = with_unit(rounding.asked, unit);
+  const auto held = with_unit(rounding.held, unit);
+  return rounding.step == 0
+             ? fmt::format("{} is held as {}", asked, held)
+             : fmt::format("{} is {}: one step is {}", asked, held, with_unit(rounding.step, unit));
 }
 
 Result<std::optional<Rounding>> judge_rounding(const Rounding& rounding) {
@@ -26,11 +29,13 @@ Result<std::optional<Rounding>> judge_rounding(const Rounding& rounding) {
   if (!lost && loss <= kToldLoss * std::abs(rounding.asked)) return std::optional<Rounding>();
   if (!lost && loss <= kMostLoss * std::abs(rounding.asked)) return std::optional(rounding);
   const auto& unit = rounding.unit;
-  const auto what =
-      fmt::format("{} would become {}", with_unit(rounding.asked, unit), with_unit(rounding.held, unit));
-  if (rounding.step == 0) return fail(Errc::usage, what + ": out of range for this object");
+  const auto asked = with_unit(rounding.asked, unit);
+  const auto held = with_unit(rounding.held, unit);
+  if (rounding.step == 0)
+    return fail(Errc::usage, fmt::format("{} would become {}: out of range for this object", asked, held));
   const double below = std::floor(rounding.asked / rounding.step) * rounding.step;
-  return fail(Errc::usage, what + ": one step is " + with_unit(rounding.step, unit),
+  return fail(Errc::usage,
+              fmt::format("{} would become {}: one step is {}", asked, held, with_unit(rounding.step, unit)),
               fmt::format("the nearest values are {} and {}", with_unit(below, unit),
                           with_unit(below + rounding.step, unit)));
 }

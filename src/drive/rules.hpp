@@ -14,6 +14,7 @@
 #include "drive/cia402.hpp"
 #include "drive/modbus_rules.hpp"
 #include "drive/pdo_recipe.hpp"
+#include "drive/power_parameter.hpp"
 #include "drive/scaling.hpp"
 #include "od/doubts.hpp"
 
@@ -198,6 +199,7 @@ struct MotionRules {
   bool software_limits_homed = false;        ///< 607Dh acts only once the axis is homed.
   std::vector<std::string> speed_limit;      ///< What limits the speed in torque mode.
   std::optional<std::uint32_t> setpoints;    ///< Targets the drive can hold.
+  std::vector<PowerParameter> without_controlword;
 };
 
 /// How an emergency message names the alarm of the panel.
@@ -230,7 +232,9 @@ struct Caution {
   std::string text_zh;
 
   bool is_conditional() const { return value || not_value; }
-  bool holds(std::int64_t now) const { return value ? now == *value : !not_value || now != *not_value; }
+  bool holds(double now) const {
+    return value ? now == static_cast<double>(*value) : !not_value || now != static_cast<double>(*not_value);
+  }
 };
 
 /// The manual's own words for an abort code; empty in the language it does not use.

@@ -35,6 +35,11 @@ bool get(const toml::node& node, Setting& out) {
          get_int(at(node, "value"), out.value);
 }
 
+bool get(const toml::node& node, PowerParameter& out) {
+  return has_only(node, {"name", "end", "value"}) && drive::get(at(node, "name"), out.name) &&
+         drive::get(at(node, "end"), out.end) && get_int(at(node, "value"), out.value);
+}
+
 bool get(const toml::node& node, ModeBits& out) {
   return has_only(node, {"mode", "disabled"}) && get_int(at(node, "mode"), out.mode) &&
          get_int(at(node, "disabled"), out.disabled);
@@ -245,7 +250,8 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
        {"software_limits", condition_into(out.software_limits)},
        {"software_limits_homed", into(out.software_limits_homed)},
        {"speed_limit", into(out.speed_limit)},
-       {"setpoints", into(out.setpoints)}});
+       {"setpoints", into(out.setpoints)},
+       {"without_controlword", list_into(out.without_controlword)}});
 }
 
 Result<void> read_emergency(const TableReader& reader, Rules& rules) {

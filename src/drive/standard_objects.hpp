@@ -55,6 +55,7 @@ inline constexpr ObjectAddress kTorqueActual{0x6077, 0};
 inline constexpr ObjectAddress kSupplyVoltage{0x6079, 0};  ///< DC link, mV.
 inline constexpr ObjectAddress kFollowingError{0x60F4, 0};
 inline constexpr ObjectAddress kDigitalInputs{0x60FD, 0};
+inline constexpr std::uint16_t kDigitalOutputsIndex = 0x60FE;
 
 inline constexpr ObjectAddress kTargetTorque{0x6071, 0};
 inline constexpr ObjectAddress kTargetPosition{0x607A, 0};

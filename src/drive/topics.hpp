@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/object_address.hpp"
@@ -37,7 +38,9 @@ struct Topic {
   std::vector<std::string> columns_zh;
   std::vector<TopicRow> rows;
   std::string picture;  ///< Drawn in characters, several lines.
-  std::string note;     ///< Where the manual contradicts itself or is wrong.
+  /// Words that cells and picture hold in English, and their Chinese; the longest first.
+  std::vector<std::pair<std::string, std::string>> words_zh;
+  std::string note;  ///< Where the manual contradicts itself or is wrong.
   std::string note_zh;
   bool assumed = false;                 ///< Something of it is not in the manual.
   bool figure = false;                  ///< The manual has part of it only as a picture.

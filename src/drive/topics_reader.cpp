@@ -25,16 +25,44 @@ class TopicsReader {
     std::int64_t format = 0;
     const auto done = TableReader(root, file_)
                           .read({{"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
-                                 {"topic", [&](const auto& n) { return topics(n); }}});
+                                 {"topic", [&](const auto& n) { return topics(n); }},
+                                 {"words_zh", [&](const auto& n) { return words(n); }}});
     if (inner_) return fail(*inner_);
     if (!done) return fail(done.error());
     if (format == 0)
       return fail(Errc::file, fmt::format("{}: 'format' is missing", file_),
                   "begin the file with format = 1");
+    for (auto& topic : topics_) give_words(topic);
     return std::move(topics_);
   }
 
  private:
+  using Words = std::vector<std::pair<std::string, std::string>>;
+
+  bool words(const toml::node& node) {
+    const auto* table = node.as_table();
+    if (table == nullptr) return false;
+    for (const auto& [key, value] : *table) {
+      std::string chinese;
+      if (!drive::get(value, chinese) || chinese.empty()) return false;
+      words_.emplace_back(std::string(key.str()), std::move(chinese));
+    }
+    std::stable_sort(words_.begin(), words_.end(),
+                     [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
+    return true;
+  }
+
+  void give_words(Topic& topic) const {
+    const auto is_cell = [&](const std::string& word) {
+      return std::any_of(topic.rows.begin(), topic.rows.end(), [&](const TopicRow& row) {
+        return std::find(row.cells.begin(), row.cells.end(), word) != row.cells.end();
+      });
+    };
+    for (const auto& word : words_)
+      if (topic.picture.find(word.first) != std::string::npos || is_cell(word.first))
+        topic.words_zh.push_back(word);
+  }
+
   /// Remembers the first error of what stands inside: with its own line it goes before "of the wrong kind".
   bool note(const Result<void>& done) {
     if (!done && !inner_) inner_ = done.error();
@@ -152,6 +180,7 @@ class TopicsReader {
   std::string_view file_;
   std::string family_;
   std::vector<Topic> topics_;
+  Words words_;
   std::set<std::string> names_;
   std::optional<Error> inner_;
 };

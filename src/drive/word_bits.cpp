@@ -41,27 +41,41 @@ std::string_view mode_word(unsigned bit, std::int8_t mode) {
   }
 }
 
-std::string in_brackets(std::string_view head, const std::string& rest) {
-  return rest.empty() ? std::string(head) : fmt::format("{} ({})", head, rest);
+std::string in_language(std::string_view word, Chinese chinese) {
+  return std::string(chinese != nullptr ? chinese(word) : word);
+}
+
+std::string bit_number(unsigned bit, Chinese chinese) {
+  const auto format = in_language("bit {}", chinese);
+  return fmt::vformat(format, fmt::make_format_args(bit));
+}
+
+void add_bit(std::string& bits, const std::string& bit, Chinese chinese) {
+  append(bits, bit, chinese != nullptr ? "，" : ", ");
+}
+
+std::string in_brackets(const std::string& head, const std::string& rest, Chinese chinese) {
+  if (rest.empty()) return head;
+  return chinese != nullptr ? head + "（" + rest + "）" : fmt::format("{} ({})", head, rest);
 }
 
 }  // namespace
 
-std::string statusword_words(std::uint16_t statusword, std::int8_t mode, bool chinese) {
+std::string statusword_words(std::uint16_t statusword, std::int8_t mode, Chinese chinese) {
   std::string bits;
-  for (const auto& bit : statusword_bits(statusword, mode)) append(bits, bit);
+  for (const auto& bit : statusword_bits(statusword, mode)) add_bit(bits, in_language(bit, chinese), chinese);
   const auto state = decode_state(statusword);
-  return in_brackets(chinese ? name_zh(state) : name(state), bits);
+  return in_brackets(std::string(chinese != nullptr ? name_zh(state) : name(state)), bits, chinese);
 }
 
-std::string controlword_words(std::uint16_t controlword, std::int8_t mode) {
+std::string controlword_words(std::uint16_t controlword, std::int8_t mode, Chinese chinese) {
   std::string bits;
   for (unsigned bit = kFirstModeBit; bit < 16; ++bit) {
     if ((controlword & 1U << bit) == 0 || bit == kFaultReset) continue;
     const auto word = bit == kHalt ? std::string_view("halt") : mode_word(bit, mode);
-    append(bits, word.empty() ? fmt::format("bit {}", bit) : std::string(word));
+    add_bit(bits, word.empty() ? bit_number(bit, chinese) : in_language(word, chinese), chinese);
   }
-  return in_brackets(command_name(decode_command(controlword, 0)), bits);
+  return in_brackets(in_language(command_name(decode_command(controlword, 0)), chinese), bits, chinese);
 }
 
 }  // namespace servoctl::drive

@@ -53,9 +53,9 @@ std::string those_there_are() {
 
 tl::unexpected<Error> missing(const std::string& name) {
   auto hint = did_you_mean(name, ethernet_interfaces());
-  if (!hint.empty()) hint += " ";
+  if (!hint.empty()) hint.insert(0, "; ");
   return fail(Errc::bus, fmt::format("there is no interface {}", name),
-              hint + those_there_are() + "; `ip link` lists all interfaces");
+              those_there_are() + "; `ip link` lists all interfaces" + hint);
 }
 
 tl::unexpected<Error> no_ethernet(const std::string& name, const Facts& facts) {

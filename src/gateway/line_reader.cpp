@@ -4,7 +4,11 @@ namespace servoctl::gateway {
 
 void LineReader::put(std::string_view bytes) {
   bytes_ += bytes;
-  // What does not belong to its beginning is forgotten as it comes: a line without an end takes no room.
+  forget_surplus();
+}
+
+/// What does not belong to its beginning is forgotten as it comes: a line without an end takes no room.
+void LineReader::forget_surplus() {
   if (bytes_.size() > longest_ && !has_line()) cut(bytes_.size());
 }
 
@@ -24,6 +28,7 @@ std::optional<LineReader::Line> LineReader::take() {
   Line out{bytes_.substr(0, end), cut_};
   bytes_.erase(0, end + 1);
   cut_ = false;
+  forget_surplus();
   if (out.text.ends_with('\r')) out.text.pop_back();
   return out;
 }

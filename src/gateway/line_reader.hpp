@@ -28,6 +28,7 @@ class LineReader {
   std::size_t pending() const { return bytes_.size(); }
 
  private:
+  void forget_surplus();
   void cut(std::size_t size);
 
   std::size_t longest_;

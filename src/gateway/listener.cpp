@@ -25,6 +25,11 @@ tl::unexpected<Error> cannot_listen(const Address& address, int error) {
   if (error == EACCES)
     return fail(Errc::bus, what + "there is no right to it",
                 "use another port, or a path in a folder of yours");
+  struct stat file {};
+  if (error == EADDRINUSE && !address.path.empty() && ::stat(address.path.c_str(), &file) == 0 &&
+      !S_ISSOCK(file.st_mode))
+    return fail(Errc::bus, what + "that is a file or a folder, and no socket",
+                "use a name that is not there yet");
   if (error == EADDRINUSE) return fail(Errc::bus, what + "another program listens there", "use another one");
   if (error == EADDRNOTAVAIL)
     return fail(Errc::bus, what + "that is no address of this machine", "use 127.0.0.1:60000");

@@ -110,10 +110,23 @@ bool Deframer::take_rtu(std::size_t length) {
   return true;
 }
 
+/// No answer is of unit 0: such a byte comes of a line whose direction changes.
+void Deframer::drop_zeros() {
+  if (expects_ != Expects::answers) return;
+  const auto begin =
+      std::find_if(buffer_.begin(), buffer_.end(), [](std::uint8_t byte) { return byte != 0; });
+  damaged_ += static_cast<std::size_t>(begin - buffer_.begin());
+  buffer_.erase(buffer_.begin(), begin);
+}
+
 /// A wrong sum says nothing of where the next message begins: silence does.
 void Deframer::parse_rtu() {
+  drop_zeros();
   for (auto length = rtu_length(); length && buffer_.size() >= *length; length = rtu_length())
-    if (!take_rtu(*length)) break;
+    if (take_rtu(*length))
+      drop_zeros();
+    else
+      break;
   // Noise that never ends.
   if (buffer_.size() > 2 * kLongestRtu) {
     damaged_ += buffer_.size();

@@ -54,6 +54,7 @@ class Deframer {
   void clear();
 
  private:
+  void drop_zeros();
   void parse_rtu();
   void parse_ascii();
   void parse_tcp();

@@ -1,10 +1,15 @@
 #include "motion/abandoned.hpp"
 
 #include <fmt/format.h>
+#include <utility>
 #include <vector>
 
+#include "drive/enabling_write.hpp"
+#include "drive/naming.hpp"
+#include "drive/quantity.hpp"
 #include "motion/left_energised.hpp"
 #include "motion/power.hpp"
+#include "od/encoding.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::motion {
@@ -17,7 +22,39 @@ bool is_at_rest(session::Session& session, std::uint8_t node) {
   return state && !drive::is_energised(*state) && !session.energised().contains(node);
 }
 
+void end_power(show::Desk& desk, std::uint8_t node, const drive::PowerParameter& parameter) {
+  const auto place = drive::place_of(*desk.profile, parameter.end);
+  if (!place) return;
+  const auto meaning = drive::meaning(drive::target_at(desk.profile, *place), node);
+  const auto data = od::encode(meaning.type, od::Value(parameter.value));
+  const auto done = data ? desk.session->download(node, *place, *data) : Result<void>(fail(data.error()));
+  if (done)
+    return desk.tell(fmt::format(
+        "notice: node {}: {} = {} is written: the client that wrote {} is gone, or the gateway ends\n", node,
+        parameter.end, parameter.value, parameter.name));
+  auto error = done.error();
+  error.message = power_warning(node, error.message);
+  desk.errors.push_back(std::move(error));
+}
+
 }  // namespace
+
+bool PowerWrites::note(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
+                       ByteSpan data) {
+  const auto* parameter = drive::power_parameter(profile, object, data);
+  if (parameter != nullptr) names_[node].insert(parameter->name);
+  return parameter != nullptr;
+}
+
+void PowerWrites::end(show::Desk& desk, const std::set<std::uint8_t>& nodes) {
+  if (desk.profile == nullptr) return;
+  const session::Deaf deaf(*desk.session);
+  for (const auto node : nodes) {
+    const auto names = std::exchange(names_[node], {});
+    for (const auto& parameter : desk.profile->rules.motion.without_controlword)
+      if (names.count(parameter.name) != 0) end_power(desk, node, parameter);
+  }
+}
 
 void stop_abandoned(show::Desk& desk, const std::set<std::uint8_t>& nodes) {
   auto& session = *desk.session;

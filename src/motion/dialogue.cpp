@@ -37,6 +37,8 @@ class DialogueRun {
     std::unique_ptr<session::ObjectChannel> objects;
     TimePoint pause;
     bool done;
+    session::SdoRequest request = {};  ///< That is under way.
+    TimePoint begun = {};
   };
 
   std::unique_ptr<session::ObjectChannel> new_channel(std::uint8_t node) {
@@ -65,6 +67,7 @@ class DialogueRun {
       if (auto sent = channel.objects->on_time(session_->received_at()); !sent) return sent;
       if (auto result = channel.objects->take_result()) {
         if (*result) lost_in_a_row_ = 0;
+        tell(channel, *result);
         channel.dialogue->on_answer(std::move(*result), session_->now());
         continue;
       }
@@ -80,12 +83,20 @@ class DialogueRun {
     }
   }
 
-  void start(Lane& channel, session::SdoRequest request) {
+  void tell(const Lane& channel, const Result<Bytes>& result) const {
+    const auto& request = channel.request;
+    if (const auto& exchanged = session_->options().exchanged)
+      exchanged({*session_, channel.dialogue->node(), request.object, request.data ? &*request.data : nullptr,
+                 result, channel.begun, result ? session_->received_at() : session_->network().stepped_at()});
+  }
+
+  void start(Lane& channel, session::SdoRequest asked) {
+    const auto& request = channel.request = std::move(asked);
+    channel.begun = session_->now();
     if (request.data)
-      channel.objects->start_download(request.object, std::move(*request.data), session_->now(),
-                                      request.transfer);
+      channel.objects->start_download(request.object, *request.data, channel.begun, request.transfer);
     else
-      channel.objects->start_upload(request.object, session_->now(), request.transfer, request.size);
+      channel.objects->start_upload(request.object, channel.begun, request.transfer, request.size);
   }
 
   void restart() {

@@ -42,16 +42,37 @@ Result<void> Motion::prepare() {
   monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
   if (const auto done = read_limits(); !done) return done;
   speed_cap_ = find_speed_cap();
-  auto plan = plan_watchdog(*session_, *profile_, node_, options_.producer);
+  return {};
+}
+
+Result<void> Motion::find_watchdog() {
+  if (watchdog_found_) return {};
+  auto plan = plan_watchdog(*session_, *profile_, node_, options_.producer,
+                            options_.rehearsal ? Listening::so_far : Listening::full);
   if (!plan) return fail(plan.error());
   watchdog_ = std::move(*plan);
+  watchdog_found_ = true;
   return {};
 }
 
 Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
-  auto items = preflight(*session_, *units_, node_, watchdog_, chinese);
+  auto items = preflight(*session_, *units_, node_, chinese);
+  if (!items) return items;
+  // What refuses the motion needs no second of listening.
+  if (check_preflight(*items, node_)) {
+    if (const auto found = find_watchdog(); !found) return fail(found.error());
+    items->push_back(watchdog_item(watchdog_));
+  }
+  if (const auto other = units_->other_turn())
+    items->push_back(
+        {PreflightItem::Weight::caution, "turn",
+         fmt::format(
+             "it was told to be {} increments (--turn or the cabinet file), and the drive's parameters "
+             "make it {}: where they are right, speeds and ways are {} times what is asked for",
+             plain_number(*units_->turn(), 12), plain_number(*other, 12),
+             number_text(*units_->turn() / *other))});
   const auto speeds = units_->unit(objects::kTargetVelocity);
-  if (items && speed_cap_ && options_.speed_limit.empty() && speeds != "rpm")
+  if (speed_cap_ && options_.speed_limit.empty() && speeds != "rpm")
     items->push_back(
         {PreflightItem::Weight::caution, "speed",
          fmt::format("the counts of a turn are not known (--turn), so no limit in rpm holds: it is {} {}, a "
@@ -138,6 +159,7 @@ Result<void> Motion::look_again() {
 
 Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& settings,
                            std::optional<ObjectAddress> kept_target) {
+  if (const auto found = find_watchdog(); !found) return found;
   if (const auto ready = look_again(); !ready) return ready;
   if (const auto own = claim_producer(*session_, node_, options_.producer, watchdog_); !own) return own;
   monitor_->find_tpdos();
@@ -176,6 +198,7 @@ Result<void> Motion::make_ready(MotionGuard& guard, std::int8_t mode,
 }
 
 Result<std::vector<session::PlannedMessage>> Motion::rehearse(const MotionPlan& plan) {
+  if (const auto found = find_watchdog(); !found) return fail(found.error());
   if (const auto ready = look_again(); !ready) return fail(ready.error());
   session::Rehearsal out;
   MotionGuard guard(*session_, *units_, node_);
@@ -212,8 +235,8 @@ Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)
   try {
     return supervise(done, longest);
   } catch (const std::bad_alloc&) {
-    return fail(error(Errc::bug, "out of memory: the motion was stopped",
-                      "use a shorter motion, or free some memory"));
+    return fail(
+        error(Errc::bug, "out of memory: the motion ends", "use a shorter motion, or free some memory"));
   }
 }
 
@@ -226,7 +249,7 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
     if (!sample) return fail(sample.error());
     if (const auto fits = check_turn(*sample); !fits) return fail(fits.error());
     if (options_.unheard && options_.unheard())
-      return fail(error(Errc::interrupted, "the output is no longer read: the motion was stopped"));
+      return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));
     const auto enough = done(*sample);
     if (!enough || *enough) return enough;
     if (session_->now() >= end) return false;
@@ -239,7 +262,7 @@ Result<void> Motion::wait_for_rest(Duration longest) {
       watch([this](const MotionSample& sample) -> Result<bool> { return stands_still(sample); }, longest);
   if (!rested) return fail(rested.error());
   if (*rested) return {};
-  return fail(error(Errc::negative, "did not stop in time; it has been stopped now",
+  return fail(error(Errc::negative, "did not come to rest in time at the end of the motion",
                     "check its deceleration (6084h) and its load"));
 }
 

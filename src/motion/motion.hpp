@@ -30,6 +30,7 @@ struct MotionOptions {
   std::string max_following_error;       ///< Of 60F4h.
   std::string window;                    ///< Of 6064h.
   std::function<void(const MotionSample&)> on_sample;
+  bool rehearsal = false;         ///< Nothing is to be sent: the bus is not listened to for a second.
   std::function<bool()> unheard;  ///< Nobody takes the samples any more: the motion ends. May be empty.
 };
 
@@ -65,8 +66,10 @@ class Motion {
 
   Motion(session::Session& session, const drive::Profile& profile, std::uint8_t node, MotionOptions options);
 
-  /// Only reads: units, the limits the user gave, which watchdog there is.
+  /// Only reads: units, the limits the user gave.
   Result<void> prepare();
+  /// Which watchdog there is: only reads, and listens for up to kListening. look() and begin() do it as well.
+  Result<void> find_watchdog();
   Result<std::vector<PreflightItem>> look(bool chinese);
 
   /// Looks once more, because a person may have taken time to answer: Errc::refused when somebody else has
@@ -160,6 +163,7 @@ class Motion {
   std::unique_ptr<MotionMonitor> monitor_;
   std::unique_ptr<MotionGuard> guard_;
   WatchdogPlan watchdog_;
+  bool watchdog_found_ = false;
   Result<double> speed_cap_ = 0.0;
   double standstill_ = 0;
   std::string turn_unchecked_;      ///< Why the counts of a turn were not held against the monitor.

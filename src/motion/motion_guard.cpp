@@ -117,8 +117,9 @@ Result<void> MotionGuard::arm(const WatchdogPlan& plan) {
     if (auto sent = send_life_sign(sign); !sent) return sent;
   }
   if (plan.kind == WatchdogPlan::Kind::sync_manager)
-    return send_life_sign({session::LifeSign::Kind::process_data, 0, plan.time});
-  if (rehearsal_ != nullptr) return {};
+    if (auto sent = send_life_sign({session::LifeSign::Kind::process_data, 0, plan.time}); !sent) return sent;
+  armed_ = plan.kind != WatchdogPlan::Kind::none;
+  if (plan.kind == WatchdogPlan::Kind::sync_manager || rehearsal_ != nullptr) return {};
   // The drive watches from the first message on.
   return pause(*session_, Duration::zero());
 }

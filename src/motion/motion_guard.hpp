@@ -20,6 +20,7 @@ struct MotionEnd {
   std::uint16_t statusword = 0;
   bool stopped = false;            ///< It stood still before its power was taken away.
   bool quick_stop = false;         ///< It needed a quick stop for that.
+  bool watched = false;            ///< The watchdog was set for the motion and left so.
   std::vector<std::string> left;   ///< What could not be put back, and why.
   std::vector<std::string> notes;  ///< What was left otherwise than before for a reason.
 };
@@ -104,6 +105,7 @@ class MotionGuard {
   bool held_before_ = false;  ///< Process data were exchanged with it in OP already.
   std::optional<session::NodeState> state_before_;
   bool energised_ = false;  ///< It was commanded up, so it may be.
+  bool armed_ = false;      ///< The watchdog was set.
   bool lost_ = false;       ///< The drive or the bus does not answer any more.
   bool powered_ = false;    ///< Its power could not be taken away.
   std::optional<double> standstill_;

@@ -8,6 +8,7 @@
 #include "motion/kept_op.hpp"
 #include "motion/motion_guard.hpp"
 #include "motion/operation_mode.hpp"
+#include "session/identify.hpp"
 #include "session/link_wait.hpp"
 #include "session/option_scope.hpp"
 
@@ -174,8 +175,14 @@ void MotionGuard::verify() {
     result_.state = drive::decode_state(*word);
     result_.verified = is_without_power(result_.state);
     // A fault reaction takes its time.
-    if (result_.verified || session_->now() >= end || !pause(*session_, kEndPause)) return;
+    if (result_.verified || session_->now() >= end || !pause(*session_, kEndPause)) break;
   }
+  // Either of two may have told it.
+  const auto single = session::refuse_duplicate(*session_, node_);
+  if (single || !result_.verified) return;
+  result_.verified = false;
+  result_.statusword = 0;
+  note("which of two drives told its state is not known", single.error());
 }
 
 MotionEnd MotionGuard::end() {
@@ -188,6 +195,8 @@ MotionEnd MotionGuard::end() {
   }
   const session::Deaf deaf(*session_);
   if (energised_) bring_down();
+  // What is put back takes the watchdog away, and where that is cut off nobody knows.
+  result_.watched = armed_ && (lost_ || powered_);
   put_back();
   put_node_back();
   if (held_before_) return_to_op();

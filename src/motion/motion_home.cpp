@@ -6,6 +6,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
 #include "motion/operation_mode.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -41,14 +42,15 @@ class Homing {
     started_at_ = motion_->session().now();
     for (const auto word : motion_->rules().start_homing)
       if (const auto written = motion_->command(word); !written) return written;
+    const session::Stretch stretch(motion_->session(), started_at_ + plan_->longest,
+                                   session::Stretch::End::at_latest);
     const auto ended = motion_->watch([this](const MotionSample& s) { return look(s); }, plan_->longest);
     if (!ended) return fail(ended.error());
     if (*ended) return {};
-    return fail(
-        motion_->error(Errc::negative,
-                       fmt::format("no home found in {} s; it is stopped now",
-                                   std::chrono::duration<double>(plan_->longest).count()),
-                       "check that the switch and the index pulse come; `--within` allows more time"));
+    return fail(motion_->error(
+        Errc::negative,
+        fmt::format("no home found in {} s", std::chrono::duration<double>(plan_->longest).count()),
+        "check that the switch and the index pulse come; `--within` allows more time"));
   }
 
  private:
@@ -134,7 +136,7 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
     return fail(motion.error(Errc::refused, fmt::format("this family has no homing method {}", number),
                              "`objects 0x6098` lists them"));
   plan.value = static_cast<double>(number);
-  plan.summary = fmt::format("{}{}", number, label != nullptr ? " " + label->label : "");
+  plan.summary = fmt::format("{}{}", number, label != nullptr ? " (" + label->label + ")" : "");
   return {};
 }
 
@@ -150,8 +152,11 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
         motion.is_told_turn()
             ? ""
             : "add --turn (6064h increments per revolution), if the drive does not report it"));
-  if (const auto allowed = motion.check_speed(speed->value); !allowed) return fail(allowed.error());
-  if (speed->value > 0 || takes_present_position(plan)) return *speed;
+  // Where it stands is home: no speed is used, and the motor is stopped when it turns faster than its limit.
+  const bool stays = takes_present_position(plan);
+  if (const auto allowed = motion.check_speed(stays ? 0 : speed->value); !allowed)
+    return fail(allowed.error());
+  if (speed->value > 0 || stays) return *speed;
   const bool fast = object == objects::kHomingSpeedSwitch;
   return fail(motion.error(Errc::refused,
                            fmt::format("its homing speed ({}) is {} {}: homing would never end",
@@ -191,6 +196,8 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
     slow = *told;
   }
   plan.speed = std::max(fast->value, slow.value);
+  if (takes_present_position(plan))
+    plan.speed = std::min(plan.speed, motion.speed_cap().value_or(plan.speed));
   plan.unit = fast->unit;
   plan.longest = home.longest.value_or(longest_homing(motion, fast->value, slow.value));
   plan.summary = fmt::format("home by method {} at {} and {} {}", plan.summary, number_text(fast->value),

@@ -6,6 +6,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_judgement.hpp"
 #include "motion/motion_kinds.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -24,6 +25,7 @@ class Jogging {
     if (!jog_->keys)
       if (const auto started = turn(1); !started) return started;
     const auto told_at = motion_->session().now();
+    if (!jog_->keys) stretch_.emplace(motion_->session(), jog_->length ? told_at + *jog_->length : kNever);
     const auto watched =
         motion_->watch([this](const MotionSample& s) { return look(s); }, jog_->length.value_or(longest()));
     if (!watched) return fail(watched.error());
@@ -31,6 +33,7 @@ class Jogging {
       return fail(motion_->error(Errc::negative, "did not turn that far in the expected time",
                                  "is it blocked, or is its speed limited?"));
     const auto stopped_at = motion_->session().now();
+    stretch_.reset();
     auto rested = rest();
     if (rested) judge(told_at, stopped_at);
     return rested;
@@ -93,7 +96,9 @@ class Jogging {
     const double rate = last_ && seconds > 0 ? std::abs(*position - *last_) / seconds : 0;
     last_ = *position;
     last_time_ = sample.time;
-    return std::abs(*position - *begin_) + rate * Motion::kRampSeconds / 2 >= plan_->way;
+    const double gone = std::abs(*position - *begin_) + rate * Motion::kRampSeconds / 2;
+    if (plan_->way > 0 && stretch_) stretch_->set_share(gone / plan_->way);
+    return gone >= plan_->way;
   }
 
   Result<void> check_following(const MotionSample& sample) {
@@ -134,6 +139,7 @@ class Jogging {
   TimePoint last_time_{};
   std::optional<TimePoint> held_at_;  ///< When a key was held last.
   bool left_alone_ = false;
+  std::optional<session::Stretch> stretch_;
   MotionJudgement judgement_;
 };
 

@@ -7,6 +7,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
 #include "motion/speed_monitor.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -39,6 +40,7 @@ class Learning {
     if (const auto found = find_speed(); !found) return found;
     looks_.clear();
     keeps_ = true;
+    const session::Stretch stretch(motion_->session(), motion_->session().now() + learn_->length);
     if (const auto watched = watch(learn_->length); !watched) return watched;
     keeps_ = false;
     return rest();

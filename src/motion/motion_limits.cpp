@@ -113,7 +113,7 @@ Result<void> Motion::check_turn(const MotionSample& sample) {
   fast_looks_ = std::abs(**shown) > most ? fast_looks_ + 1 : 0;
   if (fast_looks_ < kOddLooks) return {};
   return fail(error(Errc::negative,
-                    fmt::format("turns at {} rpm by {}, but {} rpm were asked for: stopped",
+                    fmt::format("turns at {} rpm by {}, but {} rpm were asked for",
                                 number_text(**shown), profile_->rules.learn.speed, number_text(*told_rpm_)),
                     "its counts per revolution are probably wrong: `units learn` measures them, --turn takes "
                     "those of 6064h"));
@@ -201,13 +201,14 @@ Result<void> Motion::check_speed(double speed) const {
   const bool beyond = most && std::abs(speed) > *most * kUnitRounding;
   const auto numbers = told_apart(std::abs(speed), beyond ? *most : *speed_cap_);
   if (beyond)
-    return fail(error(
-        Errc::refused,
-        fmt::format("{} {} is above what the drive allows, {} {}", numbers.first, unit, numbers.second, unit),
-        "607Fh and 6080h set it"));
+    return fail(error(Errc::refused,
+                      fmt::format("the speed of {} {} is above what the drive allows, {} {}", numbers.first,
+                                  unit, numbers.second, unit),
+                      "607Fh and 6080h set it"));
   return fail(
       error(Errc::refused,
-            fmt::format("{} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),
+            fmt::format("the speed of {} {} is above the limit of {} {}", numbers.first, unit, numbers.second,
+                        unit),
             fmt::format("`--limit {}{}` raises it, if the machine may move that fast", numbers.first, unit)));
 }
 

@@ -130,7 +130,8 @@ Result<void> MotionMonitor::check_events() {
                          "`fault show` explains it");
     }
     if (std::holds_alternative<session::NodeEvent::BootUp>(event.what))
-      out = stopped_by(node_, "restarted while moving", "is its supply steady?");
+      out = stopped_by(node_, "restarted while moving",
+                       "is its supply steady, or did another node come with its number?");
     if (std::holds_alternative<session::NodeEvent::Gone>(event.what))
       out = fail(drive_error(Errc::timeout, node_, "lost its heartbeat while moving",
                              "check cable, termination and supply"));
@@ -155,7 +156,7 @@ Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
     return Result<void>(stopped_by(node_,
                                    fmt::format("{} of {} {} exceeds its limit of {}", what, numbers.first,
                                                units_->unit(object_of(signal)), numbers.second),
-                                   "the motion was stopped; raise the limit if this is intended"));
+                                   "raise the limit, if this is intended"));
   };
   for (const auto& done : {beyond(Signal::torque, limits_.torque, 0, "the torque"),
                            beyond(Signal::following_error, limits_.following_error, 0, "the following error"),

@@ -7,6 +7,7 @@
 #include "motion/motion_judgement.hpp"
 #include "motion/motion_kinds.hpp"
 #include "motion/operation_mode.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -42,8 +43,14 @@ class Moving {
     if (motion_->rules().handshake)
       if (const auto taken = hand_over(); !taken) return taken;
     const auto longest = motion_->duration(plan_->way, plan_->speed).value_or(kUnknownDuration) * 3 / 2;
-    const auto arrived =
-        motion_->watch([this](const MotionSample& s) { return is_there(s); }, longest + kMoveSettling);
+    session::Stretch stretch(motion_->session(), kNever);
+    const auto arrived = motion_->watch(
+        [&](const MotionSample& s) {
+          if (const auto at = s[Signal::position]; at && plan_->way != 0)
+            stretch.set_share(1 - std::abs((plan_->value - *at) / plan_->way));
+          return is_there(s);
+        },
+        longest + kMoveSettling);
     if (!arrived) return fail(arrived.error());
     if (*arrived) {
       judgement_.judge_target(*motion_, *plan_, nearness());
@@ -230,7 +237,7 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   if (motion.rules().handshake)
     for (const auto word : {kEnabled, kNewSetpoint, kEnabled})
       plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
-  plan.summary = fmt::format("go {} to {} at {}", units.words(plan.way, plan.unit),
+  plan.summary = fmt::format("go by {}, to {}, at {}", units.words(plan.way, plan.unit),
                              units.words(plan.value, plan.unit), units.words(plan.speed, fast->unit));
   motion.set_standstill(plan.speed);
   motion.supervise_overspeed(plan.speed);

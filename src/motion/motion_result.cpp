@@ -10,6 +10,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "drive/cia402.hpp"
+#include "report/catalogue.hpp"
 #include "show/notice.hpp"
 
 namespace servoctl::motion {
@@ -56,12 +57,35 @@ Value end_record(const MotionEnd& end) {
                 {"not_put_back", std::move(left)}};
 }
 
+/// What must be understood in every language, whatever becomes of its parts: whole sentences, of the state,
+/// the statusword, what is expected of the motor, and what ended the motion.
+struct Unverified {
+  std::string_view alone;
+  std::string_view because;
+};
+constexpr Unverified kNotSeen{
+    "THE FINAL STATE COULD NOT BE VERIFIED: SWITCH OFF THE SUPPLY ({2})",
+    "node {4}: THE FINAL STATE COULD NOT BE VERIFIED: SWITCH OFF THE SUPPLY ({2}); the motion ended with: {3}"};
+constexpr Unverified kNotOff{
+    "IT IS IN {0} (statusword 0x{1:04X}), NOT DE-ENERGISED: SWITCH OFF THE SUPPLY ({2})",
+    "node {4}: IT IS IN {0} (statusword 0x{1:04X}), NOT DE-ENERGISED: SWITCH OFF THE SUPPLY ({2}); the motion "
+    "ended with: {3}"};
+
+std::string unverified_text(const MotionEnd& end, const WatchdogPlan& watchdog, std::string_view cause = {},
+                            std::uint8_t node = 0) {
+  const auto& words = end.statusword == 0 ? kNotSeen : kNotOff;
+  return fmt::format(fmt::runtime(cause.empty() ? words.alone : words.because), drive::name(end.state),
+                     end.statusword, expectation(watchdog, end.watched), cause, node);
+}
+
 /// A drive that may still be energised is worse than whatever ended the motion.
 Error unverified(std::uint8_t node, const MotionReport& done) {
-  auto text = end_text(done.end, done.watchdog);
-  if (!done.outcome) text += fmt::format("; the motion ended with: {}", done.outcome.error().message);
-  return drive_error(done.outcome ? Errc::negative : done.outcome.error().code, node, text,
-                     "do not approach the machine before its supply is off");
+  const std::string hint = "do not approach the machine before its supply is off";
+  if (done.outcome) return drive_error(Errc::negative, node, unverified_text(done.end, done.watchdog), hint);
+  const auto& cause = done.outcome.error();
+  auto error = make_error(cause.code, unverified_text(done.end, done.watchdog, cause.message, node), hint);
+  error.node = node;
+  return error;
 }
 
 std::string_view result_text(const MotionReport& done) {
@@ -82,15 +106,7 @@ std::string end_text(const MotionEnd& end, const WatchdogPlan& watchdog) {
   if (end.verified)
     return fmt::format("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
                        end.quick_stop ? " after a quick stop" : "", end.statusword);
-  std::string out =
-      end.statusword == 0
-          ? "THE FINAL STATE COULD NOT BE VERIFIED: SWITCH OFF THE SUPPLY"
-          : fmt::format("IT IS IN {} (statusword 0x{:04X}), NOT DE-ENERGISED: SWITCH OFF THE SUPPLY",
-                        drive::name(end.state), end.statusword);
-  if (watchdog.kind != WatchdogPlan::Kind::none)
-    out += fmt::format(" (its watchdog should stop it within {} ms)",
-                       std::chrono::duration_cast<std::chrono::milliseconds>(watchdog.time).count());
-  return out;
+  return unverified_text(end, watchdog);
 }
 
 Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
@@ -108,7 +124,9 @@ Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
   for (const auto& left : done.end.left)
     desk.errors.push_back(
         drive_error(Errc::negative, node, left,
-                    left.starts_with("object ") ? "write it by hand" : "check the drive before using it"));
+                    left.starts_with("object ")
+                        ? "once the drive answers, `write` puts it back, with these bytes behind hex:"
+                        : "check the drive before using it"));
   for (const auto& note : done.end.notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
   for (const auto& event : done.events)
     desk.notices.push_back(show::notice_text(event, desk.profile, desk.chinese, &desk.session->network()));
@@ -127,7 +145,7 @@ Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
              {"preflight", preflight_table(items), Show::json},
              {"summary", summary_of(done.series)}};
   // With -o jsonl the samples went out one by one.
-  if (desk.keeps_samples) out.push_back({"samples", samples_of(done.series), Show::json});
+  out.push_back({"samples", desk.keeps_samples ? samples_of(done.series) : report::Value(), Show::json});
   if (plot) out.push_back({"plot", report::Plot{done.series}, Show::text});
   return out;
 }
@@ -139,10 +157,16 @@ report::Table preflight_table(const std::vector<PreflightItem>& items) {
   return table;
 }
 
-std::string preflight_text(const std::vector<PreflightItem>& items) {
+std::string weight_column(PreflightItem::Weight weight, bool chinese) {
+  constexpr std::size_t kWidest = 9;
+  const std::string word(name(weight));
+  return pad_right(chinese ? report::in_chinese(word) : word, kWidest);
+}
+
+std::string preflight_text(const std::vector<PreflightItem>& items, bool chinese) {
   std::string out;
   for (const auto& item : items)
-    out += fmt::format("{}  {}{}{}\n", pad_right(name(item.weight), 7), printable(item.what),
+    out += fmt::format("{}{}{}{}\n", weight_column(item.weight, chinese), printable(item.what),
                        item.what.empty() ? "" : ": ", printable(item.text));
   return out;
 }
@@ -150,7 +174,8 @@ std::string preflight_text(const std::vector<PreflightItem>& items) {
 Record sample_record(const MotionSample& sample, TimePoint begin) {
   Record out{{"time", seconds_since(sample, begin)}, {"statusword", sample.statusword}};
   for (const auto signal : kEverySignal)
-    if (const auto value = sample[signal]) out.push_back({std::string(name(signal)), rounded(*value, 9)});
+    out.push_back({std::string(name(signal)),
+                   sample[signal] ? report::Value(rounded(*sample[signal], 9)) : report::Value()});
   return out;
 }
 
@@ -180,7 +205,7 @@ Result<void> write_csv(const std::string& path, const std::vector<MotionSample>&
     for (const auto signal : kEverySignal) {
       if (!units.has(object_of(signal))) continue;
       const auto value = sample[signal];
-      out += value ? fmt::format(",{:.9g}", *value) : ",";
+      out += value ? "," + plain_number(*value, 9) : ",";
     }
     out += '\n';
   }

@@ -17,7 +17,10 @@ std::string end_text(const MotionEnd& end, const WatchdogPlan& watchdog);
 /// The pre-flight list as a table.
 report::Table preflight_table(const std::vector<PreflightItem>& items);
 /// The same as lines for a notice or a question, `caution  watchdog  none: …`.
-std::string preflight_text(const std::vector<PreflightItem>& items);
+std::string preflight_text(const std::vector<PreflightItem>& items, bool chinese);
+
+/// How much an item weighs, in the width that it has before every item.
+std::string weight_column(PreflightItem::Weight weight, bool chinese);
 
 /// One sample as `-o jsonl` shows it, and as a line.
 report::Record sample_record(const MotionSample& sample, TimePoint begin);

@@ -81,8 +81,9 @@ Result<Value> planned(const show::Desk& desk, Motion& motion, const MotionPlan& 
 
 Result<void> ask(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
                  const std::vector<PreflightItem>& items, const std::vector<std::string>& notes) {
-  desk.tell(preflight_text(items));
-  for (const auto& note : notes) desk.tell(fmt::format("note     {}\n", note));
+  desk.tell(preflight_text(items, desk.chinese));
+  const auto column = weight_column(PreflightItem::Weight::note, desk.chinese);
+  for (const auto& note : notes) desk.tell(fmt::format("{}{}\n", column, note));
   return desk.confirm(
       fmt::format("The motor of node {} will move: {}. Is the machine clear?", node, plan.summary));
 }
@@ -111,6 +112,7 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   if (run.in_counts) options.turn.reset();
   const auto known = options.turn || run.in_counts ? KnownTurn{} : find_turn(desk, node);
   options.learned = known.counts;
+  options.rehearsal = desk.dry_run;
   std::function<void(const MotionSample&)> display;
   options.on_sample = [&display](const MotionSample& sample) { display(sample); };
   Motion motion(*desk.session, *desk.profile, node, std::move(options));
@@ -139,10 +141,9 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   if (const auto answer = ask(desk, node, *plan, *items, notes); !answer) return fail(answer.error());
   const auto done = run.run(motion, *plan);
   if (!done.begun && !done.outcome) return fail(done.outcome.error());
+  const auto written = csv.empty() ? Result<void>() : write_csv(csv, done.samples, motion.units());
   auto result = motion_result(desk, node, *plan, *items, done, request.plot);
-  if (!csv.empty())
-    if (const auto written = write_csv(csv, done.samples, motion.units()); !written)
-      desk.errors.push_back(written.error());
+  if (!written) desk.errors.push_back(written.error());
   return result;
 }
 

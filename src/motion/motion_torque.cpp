@@ -6,6 +6,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_judgement.hpp"
 #include "motion/motion_kinds.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -62,7 +63,7 @@ Result<void> check_torque(const Motion& motion, const Physical& torque) {
   const auto numbers = told_apart(std::abs(torque.value), *cap);
   return fail(
       motion.error(Errc::refused,
-                   fmt::format("{} {} is above the limit of {} {}", numbers.first, torque.unit,
+                   fmt::format("the torque of {} {} is above the limit of {} {}", numbers.first, torque.unit,
                                numbers.second, torque.unit),
                    fmt::format("`--max-torque {}{}` raises it, if machine and motor can take it, up to 6072h",
                                numbers.first, torque.unit)));
@@ -110,6 +111,7 @@ MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& 
   MotionJudgement judgement;
   if (done) {
     const auto told_at = motion.session().now();
+    const session::Stretch stretch(motion.session(), told_at + torque.length);
     const auto watched =
         motion.watch([](const MotionSample&) -> Result<bool> { return false; }, torque.length);
     if (!watched) done = fail(watched.error());

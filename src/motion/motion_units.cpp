@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "base/number.hpp"
+#include "base/text.hpp"
+#include "drive/unit.hpp"
 #include "session/measure.hpp"
 
 namespace servoctl::motion {
@@ -22,6 +24,21 @@ constexpr double kMostSteps = 9.0e15;
 /// In place of what only the drive tells: which units there are does not depend on it.
 constexpr double kSomeMeasure = 1000;
 
+/// What people write motions in, the handiest first.
+constexpr std::string_view kMotionUnits[] = {"deg",   "rev",   "rad",   "rpm",    "rev/s",
+                                             "deg/s", "rad/s", "rpm/s", "rev/s2", "rad/s2",
+                                             "%",     "Nm",    "inc",   "inc/s",  "inc/s2"};
+
+bool converts(const drive::Meaning& what, std::string_view unit) {
+  return drive::conversion(unit, what.unit) || (what.bridge && drive::conversion(unit, what.bridge->unit));
+}
+
+/// Nothing turns by it, in whatever unit.
+bool is_zero(std::string_view text) {
+  const auto number = parse_integer(text);
+  return number ? number->magnitude == 0 : parse_real(text) == 0;
+}
+
 }  // namespace
 
 MotionUnits::MotionUnits(session::Session& session, const drive::Profile& profile, std::uint8_t node,
@@ -35,6 +52,10 @@ MotionUnits::MotionUnits(session::Session& session, const drive::Profile& profil
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i]) continue;
     measures_[questions[i].measure] = answers[i]->value;
+    const bool of_turn = questions[i].measure == drive::Measure::increments_per_turn;
+    // A gear that nobody has set says that a turn is one increment.
+    if (of_turn && turn && !answers[i]->learned && answers[i]->value > 1 && answers[i]->value != *turn)
+      other_turn_ = answers[i]->value;
     if (questions[i].measure == drive::Measure::increments_per_turn && !turn) turn_way_ = answers[i]->way;
   }
   tell(turn, encoder);
@@ -76,9 +97,32 @@ Error MotionUnits::unusable(ObjectAddress object, std::string_view text, const s
   return error;
 }
 
+Result<void> MotionUnits::check_unit(const drive::Meaning& what, ObjectAddress object, std::string_view text,
+                                     std::string_view motor) const {
+  if (what.unit.empty() || is_zero(trim(motor))) return {};
+  const auto given = drive::split_unit(trim(motor));
+  if (given && converts(what, given->unit)) return {};
+  std::vector<std::string_view> units;
+  const auto of_the_load = of_load(1, unit(object));
+  if (of_the_load) units.push_back(of_the_load->unit);
+  for (const auto one : kMotionUnits)
+    if (converts(what, one)) units.push_back(one);
+  if (!converts(what, what.unit) || std::find(units.begin(), units.end(), what.unit) == units.end())
+    units.push_back(what.unit);
+  auto hint = fmt::format("its unit here is one of these: {}", fmt::join(units, ", "));
+  const bool bare = parse_integer(trim(text)) || parse_real(trim(text));
+  if (bare) return fail(Errc::usage, fmt::format("'{}' has no unit", text), std::move(hint));
+  if (!given)
+    return fail(Errc::usage, fmt::format("'{}' is not a number with a unit", text), std::move(hint));
+  return fail(Errc::usage, fmt::format("'{}': {} cannot be converted to {}", text, given->unit, what.unit),
+              std::move(hint));
+}
+
 Result<Setpoint> MotionUnits::parse(ObjectAddress object, std::string_view text, Kind kind) const {
   const auto what = meaning(object);
   const auto motor = for_motor(text, kind);
+  if (const auto told = check_unit(what, object, text, motor); !told)
+    return fail(unusable(object, text, motor, told.error()));
   const auto quantity = drive::nearest_quantity(what, motor);
   if (!quantity) return fail(unusable(object, text, motor, quantity.error()));
   auto data = od::encode(what.type, quantity->value);
@@ -98,6 +142,8 @@ std::optional<Physical> MotionUnits::physical(ObjectAddress object, ByteSpan byt
 Result<Physical> MotionUnits::parse_physical(ObjectAddress object, std::string_view text, Kind kind) const {
   auto what = meaning(object);
   const auto motor = for_motor(text, kind);
+  if (const auto told = check_unit(what, object, text, motor); !told)
+    return fail(unusable(object, text, motor, told.error()));
   auto value = drive::parse_quantity(what, motor);
   if (!value && what.encoding == od::Encoding::plain && od::is_integer(what.type)) {
     what.type = od::DataType::f64;
@@ -118,6 +164,8 @@ Result<double> MotionUnits::check(ObjectAddress object, std::string_view text, K
     if (unknown) what.min = what.max = std::nullopt;
   }
   const auto motor = for_motor(text, kind);
+  if (const auto told = check_unit(what, object, text, motor); !told)
+    return fail(unusable(object, text, motor, told.error()));
   const auto quantity = drive::nearest_quantity(what, motor);
   if (!quantity) return fail(unusable(object, text, motor, quantity.error()));
   return drive::scaled(what, quantity->value);

@@ -45,7 +45,8 @@ class MotionUnits {
   /// Whether what a user wrote has a direction: of a load that runs the other way than its motor a way is
   /// turned round, and a size, such as a ramp or a limit, is not.
   enum class Kind : std::uint8_t { way, size };
-  /// What to write for what a user wrote (`60rpm`); errors as drive::nearest_quantity().
+  /// What to write for what a user wrote (`60rpm`); errors as drive::nearest_quantity(), and Errc::usage for
+  /// a number without its unit.
   Result<Setpoint> parse(ObjectAddress object, std::string_view text, Kind kind) const;
   /// The number in these bytes in the unit people think in; empty when they are none.
   std::optional<Physical> physical(ObjectAddress object, ByteSpan bytes) const;
@@ -71,6 +72,8 @@ class MotionUnits {
   bool uses_learned() const { return turn_way_ != nullptr && turn_way_->learned; }
   /// How turn() was made of the drive's own objects; null where the user told it, or nobody has.
   const drive::Quotient* turn_way() const { return turn_way_; }
+  /// What the drive's own objects make of turn(), where the user told another number.
+  std::optional<double> other_turn() const { return other_turn_; }
 
   /// The object behind a name of the family's rules (`0x6080`, `Fn_95`); empty for none.
   std::optional<ObjectAddress> object(std::string_view name) const;
@@ -82,6 +85,10 @@ class MotionUnits {
   std::string for_motor(std::string_view text, Kind kind) const;
   /// Puts in what was told beside the drive.
   void tell(std::optional<double> turn, std::optional<double> encoder);
+  /// A number that is not 0 says its unit where the object has one: the drive's own is not what people
+  /// expect, and a motor would turn by it.
+  Result<void> check_unit(const drive::Meaning& what, ObjectAddress object, std::string_view text,
+                          std::string_view motor) const;
   /// The error about a number, in the user's words where `motor` is not what they wrote, with what to do
   /// where nobody has told how many counts a turn has.
   Error unusable(ObjectAddress object, std::string_view text, const std::string& motor, Error error) const;
@@ -90,6 +97,7 @@ class MotionUnits {
   std::uint8_t node_;
   std::map<drive::Measure, double> measures_;
   const drive::Quotient* turn_way_ = nullptr;
+  std::optional<double> other_turn_;
   std::optional<drive::LoadUnit> load_;
 };
 

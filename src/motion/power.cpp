@@ -158,12 +158,13 @@ Result<void> Power::take_down(PowerAim aim) {
   return done.outcome;
 }
 
-std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session) {
+std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session,
+                                                               const std::set<std::uint8_t>& nodes) {
   std::vector<std::pair<std::uint8_t, Result<void>>> out;
-  if (session.energised().empty()) return out;
+  if (nodes.empty()) return out;
   const auto hold = session.protect(session::Care::guarded);
   std::vector<PowerDownPlan> plans;
-  for (const auto node : session.energised().nodes()) {
+  for (const auto node : nodes) {
     plans.emplace_back();
     plans.back().node = node;
     plans.back().aim = PowerAim::stop_and_disable;
@@ -171,6 +172,10 @@ std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session&
   const auto done = take_down(session, plans);
   for (std::size_t i = 0; i < plans.size(); ++i) out.emplace_back(plans[i].node, done[i].outcome);
   return out;
+}
+
+std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session) {
+  return de_energise(session, session.energised().nodes());
 }
 
 }  // namespace servoctl::motion

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -67,8 +68,11 @@ class Power {
   std::uint16_t statusword_ = 0;  ///< Read last.
 };
 
-/// Stops and disables every drive that was left energised through this session, all at the same time. Does
-/// not hear Ctrl-C. The nodes with what came of it.
+/// Stops and disables these drives, all at the same time. Does not hear Ctrl-C. The nodes with what came of
+/// it.
+std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session,
+                                                               const std::set<std::uint8_t>& nodes);
+/// The same for every drive that was left energised through this session.
 std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session);
 
 /// The drive is energised although servoctl has not done it.

@@ -36,6 +36,13 @@ DriveState PowerDownResult::state() const {
   return statusword ? drive::decode_state(*statusword) : DriveState::unknown;
 }
 
+std::optional<bool> PowerDownResult::had_power() const {
+  if (!found || *found == DriveState::unknown || *found == DriveState::switched_on) return std::nullopt;
+  if (drive::is_energised(*found)) return true;
+  if (quick_stop) return std::nullopt;
+  return false;
+}
+
 bool PowerDownResult::is_without_power() const { return motion::is_without_power(state()); }
 
 PowerDown::PowerDown(PowerDownPlan plan) : plan_(std::move(plan)) { begin(); }
@@ -173,9 +180,10 @@ void PowerDown::on_silence(const Error& error, TimePoint now) {
     return;
   }
   const bool ring = plan_.network != nullptr && plan_.network->is_ring();
-  result_.notes.push_back(fmt::format("it did not answer and was sent {}{}",
-                                      order(session::NodeState::pre_operational),
-                                      ring ? "" : ": a stopped node does not answer"));
+  const auto sent = order(session::NodeState::pre_operational);
+  result_.notes.push_back(
+      ring ? fmt::format("it did not answer and was sent {}", sent)
+           : fmt::format("it did not answer and was sent {}: a stopped node does not answer", sent));
   back_to_ = cutting ? State::cut : State::quick_stop;
   state_ = State::wake;
 }

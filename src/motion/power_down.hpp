@@ -54,6 +54,8 @@ struct PowerDownPlan {
 struct PowerDownResult {
   Result<void>
       outcome;  ///< Errc::negative when it does not follow; of its last answer when it does not tell.
+  /// The first that was seen behind the first command, where that was answered.
+  std::optional<drive::DriveState> found;
   std::optional<std::uint16_t> statusword;  ///< The last that was read, if it was after the last command.
   bool stopped = false;     ///< It was seen at rest, or without power, before its power was taken away.
   bool quick_stop = false;  ///< It was sent 02h.
@@ -63,6 +65,9 @@ struct PowerDownResult {
   std::vector<std::string> notes;  ///< By which other means it was tried.
 
   drive::DriveState state() const;
+  /// Whether it had power before it was commanded, as far as its first state tells: 02h may take the power of
+  /// a motor at rest at once, and 07h takes "ready to switch on" to "switched on".
+  std::optional<bool> had_power() const;
   /// A state in which nothing is commanded on: without power, and not on the way up.
   bool is_without_power() const;
 };

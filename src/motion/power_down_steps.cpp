@@ -78,6 +78,7 @@ void PowerDown::on_quick_stop(const Result<Bytes>& answer, TimePoint now) {
 
 void PowerDown::on_stopping(const Result<Bytes>& answer, TimePoint now) {
   const auto state = take_state(answer);
+  if (answer && plan_.aim == PowerAim::stop && !result_.found) result_.found = state;
   if (!answer) return after_stop(now);
   if (!drive::is_energised(state)) {
     result_.stopped = true;
@@ -130,6 +131,7 @@ void PowerDown::on_switch_off(const Result<Bytes>& answer, TimePoint now) {
 
 void PowerDown::on_switching_off(const Result<Bytes>& answer, TimePoint now) {
   const auto state = take_state(answer);
+  if (answer && !result_.quick_stop && !result_.found) result_.found = state;
   if (!answer || state != DriveState::operation_enabled || now >= since_ + kPatience)
     return enter(State::cut, now);
   poll_again(State::switching_off, now);

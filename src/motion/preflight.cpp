@@ -8,6 +8,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/operation_mode.hpp"
 #include "motion/power.hpp"
+#include "report/catalogue.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -34,12 +35,11 @@ class Preflight {
   Preflight(session::Session& session, const MotionUnits& units, std::uint8_t node, bool chinese)
       : session_(&session), units_(&units), node_(node), chinese_(chinese) {}
 
-  Result<std::vector<PreflightItem>> run(const WatchdogPlan& watchdog) {
+  Result<std::vector<PreflightItem>> run() {
     if (const auto done = look_at_state(); !done) return fail(done.error());
     if (const auto done = look_at_needs(); !done) return fail(done.error());
     if (const auto done = look_at_objects(); !done) return fail(done.error());
     if (const auto done = look_at_cautions(); !done) return fail(done.error());
-    add(watchdog.is_sure() ? Weight::good : Weight::caution, "watchdog", to_string(watchdog));
     return std::move(items_);
   }
 
@@ -124,17 +124,16 @@ class Preflight {
   }
 
   /// The number a caution or a need depends on; empty where nothing tells it.
-  Result<std::optional<std::int64_t>> number(const std::string& name) {
+  Result<std::optional<double>> number(const std::string& name) {
     const auto object = units_->object(name);
-    if (!object) return std::optional<std::int64_t>();
+    if (!object) return std::optional<double>();
     const auto answer = session_->upload(node_, *object);
     if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
-    if (!answer || answer->empty()) return std::optional<std::int64_t>();
+    if (!answer || answer->empty()) return std::optional<double>();
     const auto meaning = drive::fitted(units_->meaning(*object), answer->size());
     const auto value = od::decode(meaning.type, *answer);
-    if (value && meaning.type_known && meaning.encoding == od::Encoding::plain && od::is_signed(meaning.type))
-      return std::optional(static_cast<std::int64_t>(od::to_double(*value)));
-    return std::optional(static_cast<std::int64_t>(load_le(*answer)));
+    if (value && meaning.type_known) return std::optional(od::decode_number(meaning.encoding, *value));
+    return std::optional(static_cast<double>(load_le(*answer)));
   }
 
   /// What has to be set before the drive listens to CANopen.
@@ -142,12 +141,14 @@ class Preflight {
     for (const auto& need : units_->profile().rules.nmt.needs) {
       const auto now = number(need.name);
       if (!now) return fail(now.error());
-      if (*now && **now != need.value)
+      if (*now && **now != static_cast<double>(need.value))
         add(Weight::caution, need.name,
             fmt::format("it is {}, and {} is needed for CANopen: the drive may not obey", **now, need.value));
     }
     return {};
   }
+
+  static constexpr std::string_view kUnread = "{} cannot be read (check the panel): ";
 
   /// What cannot be read may hold.
   Result<void> look_at_cautions() {
@@ -158,8 +159,8 @@ class Preflight {
         if (!now) return fail(now.error());
         if (*now && !caution.holds(**now)) continue;
         if (!*now)
-          unread = chinese_ ? fmt::format("{} 无法读取，请在面板上查看：", caution.name)
-                            : fmt::format("{} cannot be read (check the panel): ", caution.name);
+          unread =
+              fmt::format(fmt::runtime(chinese_ ? report::chinese_word(kUnread) : kUnread), caution.name);
       }
       add(Weight::caution, "",
           unread + (chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text));
@@ -182,8 +183,12 @@ std::string_view name(PreflightItem::Weight weight) {
 }
 
 Result<std::vector<PreflightItem>> preflight(session::Session& session, const MotionUnits& units,
-                                             std::uint8_t node, const WatchdogPlan& watchdog, bool chinese) {
-  return Preflight(session, units, node, chinese).run(watchdog);
+                                             std::uint8_t node, bool chinese) {
+  return Preflight(session, units, node, chinese).run();
+}
+
+PreflightItem watchdog_item(const WatchdogPlan& watchdog) {
+  return {watchdog.stops() == Stops::yes ? Weight::good : Weight::caution, "watchdog", to_string(watchdog)};
 }
 
 Result<void> check_preflight(const std::vector<PreflightItem>& items, std::uint8_t node) {

@@ -23,10 +23,12 @@ struct PreflightItem {
 std::string_view name(PreflightItem::Weight weight);  ///< `ok note caution stop`
 
 /// What there is to know before the drive is energised: state, warnings, inputs, limits, the family's
-/// cautions whose condition holds, the watchdog. Only reads; what the drive does not have is left out.
+/// cautions whose condition holds. Only reads; what the drive does not have is left out.
 /// Errc::timeout when it does not answer.
 Result<std::vector<PreflightItem>> preflight(session::Session& session, const MotionUnits& units,
-                                             std::uint8_t node, const WatchdogPlan& watchdog, bool chinese);
+                                             std::uint8_t node, bool chinese);
+/// The watchdog's line of it.
+PreflightItem watchdog_item(const WatchdogPlan& watchdog);
 
 /// Errc::refused with the first item that stops; nothing when there is none.
 Result<void> check_preflight(const std::vector<PreflightItem>& items, std::uint8_t node);

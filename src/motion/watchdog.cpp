@@ -41,13 +41,16 @@ Result<void> hear_others(session::Session& session) {
 }
 
 Result<std::optional<std::uint8_t>> free_producer(session::Session& session, std::uint8_t node,
-                                                  const std::set<std::uint8_t>& watched) {
-  if (const auto heard = hear_others(session); !heard) return fail(heard.error());
+                                                  const std::set<std::uint8_t>& watched,
+                                                  Listening listening) {
+  const auto heard = listening == Listening::full ? hear_others(session) : session.listen();
+  if (!heard) return fail(heard.error());
   return next_producer(session, node, watched);
 }
 
 Result<WatchdogPlan> plan_heartbeat(session::Session& session, const drive::Profile& profile,
-                                    std::uint8_t node, std::optional<std::uint8_t> producer) {
+                                    std::uint8_t node, std::optional<std::uint8_t> producer,
+                                    Listening listening) {
   std::vector<session::SdoRequest> requests;
   for (std::uint8_t sub = 1; sub <= kMostEntries; ++sub)
     if (has(profile, {objects::kConsumerHeartbeatIndex, sub}))
@@ -72,8 +75,8 @@ Result<WatchdogPlan> plan_heartbeat(session::Session& session, const drive::Prof
     if (any) plan.remark = "all entries of 1016h are taken";
     return plan;
   }
-  const auto id =
-      producer ? Result<std::optional<std::uint8_t>>(producer) : free_producer(session, node, plan.watched);
+  const auto id = producer ? Result<std::optional<std::uint8_t>>(producer)
+                           : free_producer(session, node, plan.watched, listening);
   if (!id) return fail(id.error());
   if (!*id) {
     plan.remark = "no node-ID is free for servoctl's heartbeat";
@@ -82,6 +85,9 @@ Result<WatchdogPlan> plan_heartbeat(session::Session& session, const drive::Prof
   plan.kind = WatchdogPlan::Kind::heartbeat;
   plan.time = kWatchdogTime;
   plan.producer = **id;
+  if (!producer && listening == Listening::so_far)
+    plan.remark =
+        "before it moves, servoctl listens for 1 s and takes another node-ID where this one is in use";
   return plan;
 }
 
@@ -136,6 +142,28 @@ Result<void> plan_guarding(session::Session& session, const drive::Profile& prof
   return {};
 }
 
+/// What the drive does when its watchdog has noticed, by 1029h and 6007h.
+Result<void> find_reaction(session::Session& session, const drive::Profile& profile, std::uint8_t node,
+                           WatchdogPlan& plan) {
+  if (profile.rules.nmt.disables_outside_operational) {
+    const auto behaviour = number(session, node, objects::kCommunicationErrorBehaviour);
+    if (!behaviour) return fail(behaviour.error());
+    plan.power_off = *behaviour && leaves_operational(static_cast<std::uint8_t>(**behaviour));
+  }
+  if (!has(profile, objects::kAbortConnectionOption)) return {};
+  const auto option = session.upload(node, objects::kAbortConnectionOption);
+  if (!option && option.error().code != Errc::sdo_abort) return fail(option.error());
+  if (!option || option->empty()) return {};
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kAbortConnectionOption), node);
+  plan.reaction_off = load_le(*option) == 0;
+  plan.option = plan.reaction_off ? kReactWithFault : static_cast<std::int16_t>(load_le(*option));
+  const auto value =
+      od::decode(meaning.type, plan.reaction_off ? store_le(kReactWithFault, option->size()) : *option);
+  const auto* label = value ? drive::label_of(meaning, *value) : nullptr;
+  if (label != nullptr) plan.reaction = label->label;
+  return {};
+}
+
 /// What a drive does when it leaves OP is no part of the standard.
 WatchdogPlan plan_outputs(const drive::Profile& profile) {
   WatchdogPlan plan;
@@ -157,7 +185,8 @@ Result<std::optional<std::uint8_t>> next_producer(session::Session& session, std
 }
 
 Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profile& profile,
-                                   std::uint8_t node, std::optional<std::uint8_t> producer) {
+                                   std::uint8_t node, std::optional<std::uint8_t> producer,
+                                   Listening listening) {
   if (producer && *producer == node)
     return fail(Errc::usage, fmt::format("{} is the drive's own node-ID", node),
                 "give servoctl a different one, such as 127");
@@ -169,10 +198,10 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
   if (network.carries(Sign::process_data)) {
     if (producer)
       return fail(Errc::usage, "--master-node: there are no heartbeats on EtherCAT",
-                  "leave it out: the watchdog of the process data stops the drive there");
+                  "leave it out: the drive has the watchdog of its process data there");
     return plan_outputs(profile);
   }
-  auto plan = network.carries(Sign::heartbeat) ? plan_heartbeat(session, profile, node, producer)
+  auto plan = network.carries(Sign::heartbeat) ? plan_heartbeat(session, profile, node, producer, listening)
                                                : Result<WatchdogPlan>(WatchdogPlan{});
   if (!plan) return plan;
   if (plan->kind == WatchdogPlan::Kind::none && network.carries(Sign::guarding) &&
@@ -181,15 +210,9 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
   }
   plan->assumed = profile.rules.is_assumed("watchdog");
   plan->alarms = profile.rules.nmt.lost_alarms;
-  if (plan->kind == WatchdogPlan::Kind::none || !has(profile, objects::kAbortConnectionOption)) return plan;
-  const auto option = session.upload(node, objects::kAbortConnectionOption);
-  if (!option) return plan;
-  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kAbortConnectionOption), node);
-  plan->reaction_off = load_le(*option) == 0;
-  const auto value =
-      od::decode(meaning.type, plan->reaction_off ? store_le(kReactWithFault, option->size()) : *option);
-  const auto* label = value ? drive::label_of(meaning, *value) : nullptr;
-  if (label != nullptr) plan->reaction = label->label;
+  plan->fault = lost_master_fault(profile);
+  if (plan->kind == WatchdogPlan::Kind::none) return plan;
+  if (const auto known = find_reaction(session, profile, node, *plan); !known) return fail(known.error());
   return plan;
 }
 
@@ -198,8 +221,10 @@ std::string to_string(const WatchdogPlan& plan) {
   if (!plan.remark.empty()) then += "; " + plan.remark;
   if (plan.assumed)
     then += "; ASSUMED: the manual does not say what the motor then does";
-  else if (plan.reaction.empty() && plan.kind != WatchdogPlan::Kind::sync_manager)
-    then += "; NOT KNOWN is what the motor then does: no 6007h tells it";
+  else if (plan.stops() != Stops::yes)
+    then += plan.option ? fmt::format("; NOT KNOWN is what the motor then does: 6007h = {} does not tell it",
+                                      *plan.option)
+                        : "; NOT KNOWN is what the motor then does: no 6007h tells it";
   switch (plan.kind) {
     case WatchdogPlan::Kind::heartbeat:
       return fmt::format("servoctl sends heartbeats as node {}: the drive notices {} after the last one{}",
@@ -217,12 +242,29 @@ std::string to_string(const WatchdogPlan& plan) {
   }
   auto none =
       plan.alarms.empty()
-          ? std::string("none: nothing stops the drive if the cable is cut or servoctl dies")
+          ? std::string("none: nothing is known that stops the drive if the cable is cut or servoctl dies")
           : fmt::format(
                 "none that servoctl can arm: the manual names alarm {} for lost communication, but not "
                 "whether and when the motor stops; if only servoctl dies it may keep turning",
                 fmt::join(plan.alarms, ", "));
   return none + (plan.remark.empty() ? "" : "; " + plan.remark);
+}
+
+std::string expectation(const WatchdogPlan& plan, bool armed) {
+  const auto time = servoctl::to_string(plan.time);
+  armed = armed && plan.kind != WatchdogPlan::Kind::none;
+  LostMaster unwatched;
+  unwatched.alarms = !plan.alarms.empty();
+  switch (armed ? plan.stops() : unwatched.stops()) {
+    case Stops::yes:
+      return fmt::format("its watchdog is set to stop it {} after the last message; that was not seen", time);
+    case Stops::unknown:
+      if (!armed) return "whether it stops by itself is not known";
+      return fmt::format(
+          "its watchdog notices {} after the last message; whether the motor then stops is not known", time);
+    case Stops::no: break;
+  }
+  return "nothing is known that stops it by itself";
 }
 
 }  // namespace servoctl::motion

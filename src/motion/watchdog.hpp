@@ -8,6 +8,7 @@
 
 #include "drive/profile.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/lost_master.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::motion {
@@ -28,13 +29,18 @@ struct WatchdogPlan {
   std::set<std::uint8_t> watched = {};  ///< Node-IDs that the drive watches already.
   std::string reaction = {};            ///< What the drive does then, by 6007h; empty when it does not tell.
   bool reaction_off = false;            ///< 6007h is 0, no action: it has to be set as well.
+  std::optional<std::int64_t> option = {};  ///< 6007h as it is in the motion, where the drive has it.
+  bool power_off = false;                   ///< LostMaster::power_off
+  std::string fault = {};                   ///< lost_master_fault()
   bool assumed = false;  ///< The manual does not say what the motor does when the master is lost.
-  /// Whether it is known that the motor stops: CiA 301 promises a change of the NMT state alone (1029h).
-  bool is_sure() const {
-    return kind != Kind::none && !assumed && (kind == Kind::sync_manager || !reaction.empty());
-  }
   std::vector<std::string> alarms = {};  ///< What the manual calls a lost communication; it tells no more.
   std::string remark = {};               ///< Why there is none, or on what it depends; may be empty.
+
+  /// Whether it is known that the motor stops: CiA 301 promises a change of the NMT state alone (1029h).
+  Stops stops() const {
+    return LostMaster{kind != Kind::none, option, power_off, !fault.empty(), !alarms.empty(), assumed}
+        .stops();
+  }
 };
 
 /// 6007h, and its value for a fault (CiA 402-2, abort connection option code).
@@ -50,12 +56,17 @@ inline constexpr Duration kOutputsTime = std::chrono::milliseconds(100);
 /// one at least so often.
 inline constexpr Duration kListening = std::chrono::seconds(1);
 
+/// How long others are listened to before one of their node-IDs counts as free: kListening, or no longer than
+/// until now, for what is only shown.
+enum class Listening : std::uint8_t { full, so_far };
+
 /// Finds out which watchdog the drive has; only reads. `producer`: servoctl's node-ID, where the user names
 /// one; else the highest that nobody was heard under since the bus was opened, for which it waits up to
 /// kListening. The number is servoctl's own only after claim_producer(). Errc::refused when somebody was
 /// heard under the number that the user names.
 Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profile& profile,
-                                   std::uint8_t node, std::optional<std::uint8_t> producer);
+                                   std::uint8_t node, std::optional<std::uint8_t> producer,
+                                   Listening listening = Listening::full);
 
 /// The highest node-ID under which nobody was heard and nobody answers, but for the drive's own and those it
 /// watches; empty when there is none.
@@ -64,5 +75,9 @@ Result<std::optional<std::uint8_t>> next_producer(session::Session& session, std
 
 /// `heartbeat: the drive stops by itself after 500 ms without servoctl (fault)`.
 std::string to_string(const WatchdogPlan& plan);
+
+/// What is to be expected of a motor that can no longer be told to stop: `whether it stops by itself is not
+/// known`. `armed`: the watchdog was set, and is set still.
+std::string expectation(const WatchdogPlan& plan, bool armed);
 
 }  // namespace servoctl::motion

@@ -13,7 +13,6 @@ namespace servoctl::motion {
 namespace {
 
 using session::Supervision;
-using Stops = WatchdogReport::Stops;
 
 /// CiA 301, 7.5.2.32.
 std::string_view nmt_after_error(std::uint8_t behaviour) {
@@ -55,26 +54,14 @@ void add_reaction(const Supervision& found, const drive::Profile& profile, Watch
   if (label != nullptr) out.reaction = label->label;
 }
 
-/// CiA 301, 7.2.7.1: life guard or heartbeat error. A drive in fault has no power (CiA 402-2).
-void add_fault(const drive::Profile& profile, WatchdogReport& out) {
-  constexpr std::uint16_t kLifeGuardError = 0x8130;
-  for (const auto& fault : profile.faults)
-    if (fault.code == kLifeGuardError && fault.kind == drive::Fault::Kind::fault) out.fault = fault.name;
-}
-
-void judge(const drive::Rules& rules, WatchdogReport& out) {
-  if (out.noticed_by.empty()) {
-    out.stops = out.alarms.empty() ? Stops::no : Stops::unknown;
-    return;
-  }
-  if (out.option == 0) {
-    out.stops = Stops::no;
+Stops judged(const drive::Rules& rules, const Supervision& found, WatchdogReport& out) {
+  if (!out.noticed_by.empty() && out.option == 0)
     out.remarks.emplace_back("6007h is 0: it does nothing about it");
-    return;
-  }
-  const bool pre_operational = out.nmt_state.starts_with("Operational becomes");
-  const bool by_state = rules.nmt.disables_outside_operational && pre_operational;
-  out.stops = (out.option || by_state || !out.fault.empty()) && !out.assumed ? Stops::yes : Stops::unknown;
+  const bool power_off = rules.nmt.disables_outside_operational && found.communication_error &&
+                         leaves_operational(*found.communication_error);
+  return LostMaster{!out.noticed_by.empty(), out.option,          power_off,
+                    !out.fault.empty(),      !out.alarms.empty(), out.assumed}
+      .stops();
 }
 
 WatchdogReport report_of(const Supervision& found, const drive::Profile& profile) {
@@ -85,13 +72,13 @@ WatchdogReport report_of(const Supervision& found, const drive::Profile& profile
   add_heartbeats(found, out);
   add_guarding(found, profile.rules, out);
   add_reaction(found, profile, out);
-  add_fault(profile, out);
+  out.fault = lost_master_fault(profile);
   if (found.communication_error) out.nmt_state = nmt_after_error(*found.communication_error);
   if (found.entries.empty() && !found.guard_time)
     out.remarks.emplace_back("it has neither 1016h nor 100Ch: it watches no master over CANopen");
   if (profile.rules.nmt.disables_outside_operational)
     out.remarks.emplace_back("leaving Operational de-energises it");
-  judge(profile.rules, out);
+  out.stops = judged(profile.rules, found, out);
   return out;
 }
 
@@ -107,15 +94,6 @@ void add_outputs(WatchdogReport& out) {
 }
 
 }  // namespace
-
-std::string_view text_of(Stops stops) {
-  switch (stops) {
-    case Stops::yes: return "yes";
-    case Stops::unknown: return "not known";
-    case Stops::no: break;
-  }
-  return "no";
-}
 
 std::vector<Result<WatchdogReport>> read_watchdogs(session::Session& session, const drive::Profile& profile,
                                                    std::span<const std::uint8_t> nodes) {

@@ -7,14 +7,13 @@
 #include <vector>
 
 #include "drive/profile.hpp"
+#include "motion/lost_master.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::motion {
 
 /// What a drive does by itself when its master disappears, as it is set now.
 struct WatchdogReport {
-  /// Whether the motor comes to rest: `yes`, nothing notices it: `no`, or nobody says: `unknown`.
-  enum class Stops : std::uint8_t { no, unknown, yes };
   std::uint8_t node = 0;
   Stops stops = Stops::no;
   std::vector<std::string> noticed_by;  ///< `heartbeat of node 3, after 300 ms`
@@ -26,8 +25,6 @@ struct WatchdogReport {
   std::vector<std::string> remarks;
   bool assumed = false;  ///< The manual does not say what the motor does then.
 };
-/// `no`, `not known`, `yes`.
-std::string_view text_of(WatchdogReport::Stops stops);
 
 /// Reads it, all nodes at the same time; a node that does not answer has an error instead.
 std::vector<Result<WatchdogReport>> read_watchdogs(session::Session& session, const drive::Profile& profile,

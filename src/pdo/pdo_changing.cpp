@@ -96,7 +96,7 @@ class Changing {
       if (const auto fits = check(job); !fits) {
         auto error = fits.error();
         error.node = job.present.node;
-        error.message = fmt::format("node {}, {}", job.present.node, error.message);
+        error.message = fmt::format("node {}: {}", job.present.node, error.message);
         return fail(std::move(error));
       }
       if (const auto planned = plan(job); !planned) return planned;
@@ -155,8 +155,9 @@ class Changing {
     std::string nodes;
     for (const auto& job : jobs_) append(nodes, fmt::format("{}", job.present.node));
     for (const auto& pdo : jobs_.front().wanted.pdos) append(pdos, canopen::name(pdo.direction, pdo.number));
-    return fmt::format("Change {} of node {}? Other users of {} must be changed too.", pdos, nodes,
-                       jobs_.front().wanted.pdos.size() == 1 ? "it" : "them");
+    return jobs_.front().wanted.pdos.size() == 1
+               ? fmt::format("Change {} of node {}? Other users of it must be changed too.", pdos, nodes)
+               : fmt::format("Change {} of node {}? Other users of them must be changed too.", pdos, nodes);
   }
 
   /// What changes it, and what the family's password and memory need around it.

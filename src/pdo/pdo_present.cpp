@@ -26,7 +26,7 @@ Result<Pdo> find_pdo(const PresentPdos& present, std::string_view name) {
   for (const auto& pdo : present.pdos) append(there, canopen::name(pdo.direction, pdo.number));
   return fail(Errc::usage,
               fmt::format("node {} has no {}", present.node, canopen::name(like->direction, like->number)),
-              there.empty() ? "it has no PDOs that can be read" : "it has " + there);
+              there.empty() ? "it has no PDOs that can be read" : fmt::format("it has {}", there));
 }
 
 }  // namespace servoctl::pdo

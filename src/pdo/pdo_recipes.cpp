@@ -109,7 +109,7 @@ Result<WantedPdos> follow(const drive::Profile& profile, const PresentPdos& pres
     if (std::any_of(out.pdos.begin(), out.pdos.end(), [&](const Pdo& other) {
           return other.direction == pdo->direction && other.number == pdo->number;
         }))
-      return of(recipe, Error{Errc::usage, "it appears twice", {}, {}, {}, {}, {}});
+      return of(recipe, make_error(Errc::usage, "it appears twice"));
     const bool linked = present.values.count({pdo->communication_index(), 1}) > 0;
     fixed = fixed || !linked;
     if (const auto done = set_mapping(profile, recipe, *pdo); !done) return of(recipe, done.error());

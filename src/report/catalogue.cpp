@@ -61,6 +61,7 @@ Catalogue::Catalogue(const std::vector<PoEntry>& entries) {
   std::unordered_map<std::string, std::size_t> known;
   for (const auto& entry : entries) {
     if (entry.text.empty()) continue;
+    literals_.emplace(entry.id, entry.text);
     const auto id = unbracketed(bare(entry.id).text, "(", ")");
     const auto text = unbracketed(unbracketed(bare_chinese(entry.text), "（", "）"), "(", ")");
     Phrase phrase(id);
@@ -100,6 +101,11 @@ Catalogue::Catalogue(const std::vector<PoEntry>& entries) {
 std::string_view Catalogue::whole(std::string_view text) const {
   const auto found = whole_.find(std::string(text));
   return found == whole_.end() ? std::string_view() : std::string_view(found->second);
+}
+
+std::string_view Catalogue::literal(std::string_view text) const {
+  const auto found = literals_.find(std::string(text));
+  return found == literals_.end() ? std::string_view() : std::string_view(found->second);
 }
 
 std::vector<const Catalogue::Pattern*> Catalogue::candidates(std::string_view text) const {

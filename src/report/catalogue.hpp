@@ -11,6 +11,9 @@
 
 namespace servoctl::report {
 
+/// Names that stand in data and not in the program, and what they are in another language.
+using Names = std::unordered_map<std::string, std::string>;
+
 /// Texts that are made in English, and what they are in another language. It does not change once it is made,
 /// so that several threads may ask it.
 class Catalogue {
@@ -29,15 +32,20 @@ class Catalogue {
   /// around names, numbers and other texts, which are put into the other language in turn, else part by part
   /// (lines, sentences, clauses, brackets). Of several that fit, the one that leaves no English, and has the
   /// most letters. What stands in quotes '…' or backticks stays as it is.
-  std::string translated(std::string_view text) const;
+  /// A part that is a name in `names` (may be null) is what stands there.
+  std::string translated(std::string_view text, const Names* names = nullptr) const;
 
   /// The whole text, bare; empty where there is none.
   std::string_view whole(std::string_view text) const;
+  /// The format string that is this one in the other language, with its placeholders; empty where there is
+  /// none.
+  std::string_view literal(std::string_view text) const;
   /// Those that may fit, with the most letters first.
   std::vector<const Pattern*> candidates(std::string_view text) const;
 
  private:
   std::unordered_map<std::string, std::string> whole_;
+  std::unordered_map<std::string, std::string> literals_;
   std::vector<Pattern> patterns_;
   /// By the one of their words that the fewest patterns have.
   std::unordered_map<std::string, std::vector<std::size_t>> by_word_;
@@ -47,6 +55,10 @@ class Catalogue {
 const Catalogue& chinese();
 
 /// What a command says in English, in Chinese.
-std::string in_chinese(std::string_view text);
+std::string in_chinese(std::string_view text, const Names* names = nullptr);
+
+/// A literal of the program in Chinese, with its placeholders; itself where there is none. It takes no time,
+/// so that each of many frames may ask.
+std::string_view chinese_word(std::string_view english);
 
 }  // namespace servoctl::report

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -43,6 +44,11 @@ class JsonWriter {
   void value(std::string_view text);
   void value(const std::string& text) { value(std::string_view(text)); }
   void value(const char* text) { value(std::string_view(text)); }
+  /// Null where there is nothing.
+  template <class T>
+  void value(const std::optional<T>& some) {
+    some ? value(*some) : null();
+  }
   template <class T>
   requires std::is_same_v<T, Value>
   void value(const T& tree) { write(tree); }

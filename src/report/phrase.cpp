@@ -14,6 +14,23 @@ constexpr std::size_t kMostSteps = 200;
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_figure(char c) { return c >= '0' && c <= '9'; }
 
+/// A Chinese character or one of its marks, of three bytes; `…` is none.
+bool begins_wide(std::string_view text) {
+  return text.size() >= 3 && static_cast<unsigned char>(text.front()) >= 0xE3 &&
+         static_cast<unsigned char>(text.front()) <= 0xEF;
+}
+bool ends_wide(std::string_view text) {
+  return text.size() >= 3 && begins_wide(text.substr(text.size() - 3));
+}
+
+/// Between Chinese and Chinese there is no blank, which stands beside a number or a name alone.
+void append_beside(std::string_view text, std::string& out) {
+  if (out.ends_with(' ') && begins_wide(text) && ends_wide(std::string_view(out).substr(0, out.size() - 1)))
+    out.pop_back();
+  if (text.starts_with(' ') && ends_wide(out) && begins_wide(text.substr(1))) text.remove_prefix(1);
+  out += text;
+}
+
 /// Where the placeholder that begins here ends, behind its brace; 0 where none begins.
 std::size_t place_end(std::string_view text) {
   std::size_t at = 1;
@@ -145,8 +162,8 @@ std::optional<std::vector<std::string_view>> Phrase::match(std::string_view text
 std::string Phrase::with(const std::vector<std::string>& arguments) const {
   auto out = pieces_.front();
   for (std::size_t i = 0; i < places_.size(); ++i) {
-    if (places_[i].argument < arguments.size()) out += arguments[places_[i].argument];
-    out += pieces_[i + 1];
+    if (places_[i].argument < arguments.size()) append_beside(arguments[places_[i].argument], out);
+    append_beside(pieces_[i + 1], out);
   }
   return out;
 }

@@ -5,6 +5,7 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "report/catalogue.hpp"
 #include "report/markup.hpp"
 
 namespace servoctl::report {
@@ -50,13 +51,11 @@ std::string sheet_rules(const Page& page) {
 
 std::string signature_lines(const Page& page) {
   if (page.signatures.empty()) return {};
-  const auto say = [&](std::string_view english, std::string_view chinese) {
-    return std::string(page.chinese ? chinese : english);
-  };
+  const auto say = [&](std::string_view english) { return page.chinese ? chinese_word(english) : english; };
   auto out = fmt::format(
       "<div class=\"together\">\n<h2>{}</h2>\n<table class=\"signatures\">\n<thead><tr><th></th>"
       "<th>{}</th><th>{}</th><th>{}</th></tr></thead>\n<tbody>\n",
-      say("Signatures", "签字"), say("name", "姓名"), say("date", "日期"), say("signature", "签名"));
+      say("Signatures"), say("name in print"), say("date"), say("signature"));
   for (const auto& who : page.signatures)
     out += fmt::format("<tr><td>{}</td><td></td><td></td><td></td></tr>\n", escaped(who));
   return out + "</tbody></table>\n</div>\n";

@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "report/axis.hpp"
+#include "report/chinese_marks.hpp"
 #include "report/markup.hpp"
 
 namespace servoctl::report {
@@ -109,7 +110,9 @@ std::string label(double x, double y, std::string_view anchor, const std::string
 
 std::string panel(const Series& series, const Extent& time, double top, std::string_view no_samples) {
   const auto extent = extent_of(series.values);
-  if (!extent) return label(kLeft, top + 14, "start", fmt::format("{}: {}", title_of(series), no_samples));
+  if (!extent)
+    return label(kLeft, top + 14, "start",
+                 chinese_marks(fmt::format("{}: {}", title_of(series), no_samples)));
   const auto axis = axis_of(*extent, kMostTicks);
   std::string out = label(kLeft, top + 14, "start", title_of(series));
   top += kTitle;

@@ -1,6 +1,8 @@
 #include "report/text_parts.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 
 namespace servoctl::report {
 namespace {
@@ -134,8 +136,10 @@ TextParts parts_at(std::string_view text, Joint joint) {
     if (!into_brackets && walk.bracketed()) continue;
     const auto size = joint_size(text, at, joint);
     if (size == 0) continue;
-    out.parts.push_back(text.substr(begin, at - begin));
-    out.joints.push_back(text.substr(at, size));
+    // A question keeps its mark: the sentence of the catalogue has it.
+    const std::size_t own = text[at] == '?' ? 1 : 0;
+    out.parts.push_back(text.substr(begin, at + own - begin));
+    out.joints.push_back(text.substr(at + own, size - own));
     begin = at + size;
     at = begin - 1;
   }
@@ -144,7 +148,33 @@ TextParts parts_at(std::string_view text, Joint joint) {
   return out;
 }
 
+namespace {
+
+/// They are the same in every language.
+bool is_unit(std::string_view word) {
+  static constexpr std::string_view kUnits[] = {"rpm", "ms", "us",    "ns",  "deg", "rad",
+                                                "inc", "mm", "pulse", "rev", "ohm", "pps"};
+  return std::find(std::begin(kUnits), std::end(kUnits), word) != std::end(kUnits);
+}
+
+bool is_in_capitals(std::string_view word) {
+  return word.size() >= 2 &&
+         std::all_of(word.begin(), word.end(), [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
+}  // namespace
+
+bool begins_in_capitals(std::string_view text) {
+  const auto first = text.find(' ');
+  if (first == std::string_view::npos) return false;
+  const auto rest = text.substr(first + 1);
+  return is_in_capitals(text.substr(0, first)) && is_in_capitals(rest.substr(0, rest.find(' ')));
+}
+
 std::size_t small_words(std::string_view text) {
+  // Of a sentence in capitals; one or two are abbreviations.
+  constexpr std::size_t kSentence = 3;
+  std::size_t capitals = 0;
   constexpr std::string_view kEnds = " ,;:.?!()\n";
   const auto ends = [&](std::size_t at) {
     if (at >= text.size()) return true;
@@ -160,7 +190,10 @@ std::size_t small_words(std::string_view text) {
   for (std::size_t at = 0; at <= text.size(); ++at) {
     const bool quoted = at < text.size() && walk.quoted(at);
     if (!quoted && ends(at)) {
-      if (plain && letters >= 2) ++out;
+      const auto word = text.substr(at - letters, letters);
+      if (plain && letters >= 2 && !is_unit(word)) ++out;
+      if (letters > 0) capitals = is_in_capitals(word) ? capitals + 1 : 0;
+      if (capitals >= kSentence) out += capitals == kSentence ? kSentence : 1;
       letters = 0;
       plain = true;
     } else {

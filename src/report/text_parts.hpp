@@ -33,6 +33,9 @@ struct TextParts {
 /// is not taken apart. One part where there is no such joint.
 TextParts parts_at(std::string_view text, Joint joint);
 
+/// Whether its first two words are in capitals: a sentence of them, not a sign such as `LSS` before a text.
+bool begins_in_capitals(std::string_view text);
+
 /// How many words of small letters it holds that may be English: two letters or more, outside quotes and
 /// backticks, not part of a name such as `a.csv`, `--yes`, `can0`.
 std::size_t small_words(std::string_view text);

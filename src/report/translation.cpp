@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "report/catalogue.hpp"
+#include "report/chinese_marks.hpp"
+#include "report/text_kinds.hpp"
 #include "report/text_parts.hpp"
 #include "report/zh_po.hpp"
 
@@ -33,8 +35,8 @@ struct Translated {
 /// The work on one text.
 class Translation {
  public:
-  Translation(const Catalogue& catalogue, std::size_t size)
-      : catalogue_(&catalogue), effort_(kLeastEffort + size * kEffortPerByte) {}
+  Translation(const Catalogue& catalogue, const Names* names, std::size_t size)
+      : catalogue_(&catalogue), names_(names), effort_(kLeastEffort + size * kEffortPerByte) {}
 
   Translated of(std::string_view text) {
     if (depth_ > kDeepest || effort_ == 0 || !has_letters(text)) return as_it_is(text);
@@ -54,18 +56,18 @@ class Translation {
   }
 
  private:
-  static bool has_letters(std::string_view text) {
-    return std::any_of(text.begin(), text.end(),
-                       [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
-  }
-
   std::optional<std::string> all_of(std::string_view text) const {
     const auto found = catalogue_->whole(text);
-    return found.empty() ? std::nullopt : std::optional(std::string(found));
+    if (!found.empty()) return std::string(found);
+    if (names_ == nullptr) return std::nullopt;
+    const auto name = names_->find(std::string(text));
+    return name == names_->end() ? std::nullopt : std::optional(name->second);
   }
 
   Translated of_bare(std::string_view text) {
     if (auto found = all_of(text)) return {std::move(*found), 0, true};
+    if (auto found = behind_place(text)) return std::move(*found);
+    if (auto found = before_round(text)) return std::move(*found);
     auto best = around(text);
     const auto take = [&](Translated&& other) {
       if (other.changed && (!best || other.left < best->left)) best = std::move(other);
@@ -82,6 +84,31 @@ class Translation {
     return best ? std::move(*best) : as_it_is(text);
   }
 
+  /// A sentence that is known as a whole, behind a place; nothing for others.
+  std::optional<Translated> behind_place(std::string_view text) {
+    constexpr std::size_t kWords = 3;
+    const auto parts = parts_at(text, Joint::colons);
+    if (parts.parts.size() < 2 || !is_place(parts.parts.front())) return std::nullopt;
+    const auto& place = parts.parts.front();
+    const auto rest = text.substr(place.size() + parts.joints.front().size());
+    if (auto inner = behind_place(rest)) return Translated{of(place).text + "：" + inner->text, 0, true};
+    auto found = rest.find('\n') == std::string_view::npos ? all_of(bare(rest).text) : std::nullopt;
+    if (!found || std::count(rest.begin(), rest.end(), ' ') < static_cast<std::ptrdiff_t>(kWords))
+      return std::nullopt;
+    return Translated{of(place).text + "：" + *found, 0, true};
+  }
+
+  /// `… [NODE=1]`: a batch file and its round; nothing for others.
+  std::optional<Translated> before_round(std::string_view text) {
+    const auto at = text.rfind(" [");
+    if (at == std::string_view::npos || at == 0 || !text.ends_with(']') ||
+        text.find('=', at) == std::string_view::npos)
+      return std::nullopt;
+    auto out = of(text.substr(0, at));
+    out.text += text.substr(at);
+    return out;
+  }
+
   /// `json, csv or batch`: names without blanks.
   Translated names_in_words(std::string_view text) const {
     for (const auto& [word, chinese] : {std::pair<std::string_view, std::string_view>{" or ", " 或 "},
@@ -91,11 +118,11 @@ class Translation {
       std::string out;
       bool all = true;
       for (const auto name : parts_at(text.substr(0, at), Joint::commas).parts) {
-        all = all && !name.empty() && name.find(' ') == std::string_view::npos;
+        all = all && is_name(name);
         (out += out.empty() ? "" : "、") += name;
       }
       const auto last = text.substr(at + word.size());
-      if (!all || last.empty() || last.find(' ') != std::string_view::npos) continue;
+      if (!all || !is_name(last)) continue;
       return {out + std::string(chinese) + std::string(last), 0, true};
     }
     return as_it_is(text);
@@ -108,29 +135,23 @@ class Translation {
     const auto& first = parts.parts.front();
     const auto lead = of(first);
     auto out = of(text.substr(first.size() + parts.joints.front().size()));
-    out.left += lead.left;
+    // One word at the beginning that is not known is the name of an axis, a bus or a file.
+    if (depth_ > 1 || lead.changed || first.find(' ') != std::string_view::npos) out.left += lead.left;
     out.changed = out.changed || lead.changed;
     out.text = lead.text + joint_zh(parts.joints.front(), out) + out.text;
     return out;
-  }
-
-  static bool is_plural(std::string_view ending) { return ending == "s" || ending == "es" || ending == "is"; }
-
-  static bool is_several(std::string_view text) {
-    return parts_at(text, Joint::colons).parts.size() > 1 ||
-           parts_at(text, Joint::clauses).parts.size() > 1 ||
-           parts_at(text, Joint::sentences).parts.size() > 1;
   }
 
   /// `0x11 generic`, `4 segment …`, `LSS …`: a number or a sign, and a text behind it.
   Translated behind_sign(std::string_view text) {
     const auto blank = text.find(' ');
     const auto sign = text.substr(0, blank);
-    const bool is_sign = blank != std::string_view::npos &&
+    const bool is_sign = blank != std::string_view::npos && !sign.ends_with(':') &&
                          (sign.starts_with("0x") || std::none_of(sign.begin(), sign.end(), [](char c) {
                             return (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
                           }));
-    if (!is_sign) return as_it_is(text);
+    // The words of a sentence in capitals are no signs.
+    if (!is_sign || begins_in_capitals(text)) return as_it_is(text);
     auto out = of(text.substr(blank + 1));
     out.text.insert(0, text.substr(0, blank + 1));
     return out;
@@ -171,9 +192,7 @@ class Translation {
       if (place.suffix && is_plural(value.text)) value = {};
       const bool is_name = led && values[i].find(' ') == std::string_view::npos;
       if (small && value.left > 0 && !value.changed && !is_name) return std::nullopt;
-      // `conflict: PDO of node 3 …` is not one thing of node 3.
-      const bool begins = i == 0 && pattern.id.pieces().front().empty();
-      if (begins && !place.quoted && is_several(values[i])) ++out.left;
+      if (takes_too_much(pattern.id, i, values[i])) ++out.left;
       out.left += value.left;
       arguments.resize(std::max(arguments.size(), place.argument + 1));
       arguments[place.argument] = std::move(value.text);
@@ -192,16 +211,20 @@ class Translation {
       out.text += part.text;
       i += count;
       auto both = part;
-      both.changed = both.changed || (i < parts.parts.size() && of(parts.parts[i]).changed);
+      // Brackets open and close in one way.
+      const auto other = joint == Joint::brackets ? 1 - (i - 1) : i;
+      both.changed = both.changed || (other < parts.parts.size() &&
+                                      (of(parts.parts[other]).changed || has_chinese(parts.parts[other])));
       out.text +=
           joint <= Joint::columns ? std::string(parts.joints[i - 1]) : joint_zh(parts.joints[i - 1], both);
     }
     return out;
   }
 
-  /// The mark stays as it was between what stays as it was.
+  /// The mark stays as it was between what stays as it was. Behind a wide one is no blank.
   static std::string joint_zh(std::string_view joint, const Translated& beside) {
-    return beside.changed ? punctuation_zh(joint) : std::string(joint);
+    if (!beside.changed && !has_chinese(beside.text)) return std::string(joint);
+    return joint == " " && beside.text.ends_with("？") ? std::string() : punctuation_zh(joint);
   }
 
   std::pair<Translated, std::size_t> run_at(const TextParts& parts, std::size_t at, Joint joint) {
@@ -225,6 +248,7 @@ class Translation {
   }
 
   const Catalogue* catalogue_;
+  const Names* names_;
   std::size_t effort_;
   std::size_t depth_ = 0;
   std::unordered_map<std::string, Translated> known_;
@@ -232,8 +256,8 @@ class Translation {
 
 }  // namespace
 
-std::string Catalogue::translated(std::string_view text) const {
-  return Translation(*this, text.size()).of(text).text;
+std::string Catalogue::translated(std::string_view text, const Names* names) const {
+  return chinese_marks(Translation(*this, names, text.size()).of(text).text);
 }
 
 const Catalogue& chinese() {
@@ -245,6 +269,13 @@ const Catalogue& chinese() {
   return catalogue;
 }
 
-std::string in_chinese(std::string_view text) { return chinese().translated(text); }
+std::string in_chinese(std::string_view text, const Names* names) {
+  return chinese().translated(text, names);
+}
+
+std::string_view chinese_word(std::string_view english) {
+  const auto found = chinese().literal(english);
+  return found.empty() ? english : found;
+}
 
 }  // namespace servoctl::report

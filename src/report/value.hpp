@@ -45,6 +45,7 @@ struct Table {
   std::vector<List> rows;
   bool json_only = false;               ///< Nothing in it is worth reading: the errors say it all.
   std::vector<std::string> below = {};  ///< Lines that stand under it, in text only.
+  bool below_told = false;              ///< They are in the language of who reads already.
   List documents;                       ///< One for each row, where JSON tells more than cells do.
 };
 

@@ -58,12 +58,12 @@ Criterion skipped(std::string id, std::string name, std::string why) {
 
 std::string in_words(const Criterion& criterion) {
   const auto unit = criterion.unit.empty() ? std::string() : " " + criterion.unit;
-  std::string out;
-  if (!criterion.figure.is_null()) out = line_text(criterion.figure) + unit;
+  const auto figure = criterion.figure.is_null() ? std::string() : line_text(criterion.figure) + unit;
   const auto limit = line_text(criterion.limit) + unit;
-  if (criterion.relation == "<=") out += ", at most " + limit;
-  if (criterion.relation == ">=") out += ", at least " + limit;
-  if (criterion.relation == "=") out += ", wanted: " + limit;
+  auto out = figure;
+  if (criterion.relation == "<=") out = fmt::format("{}, at most {}", figure, limit);
+  if (criterion.relation == ">=") out = fmt::format("{}, at least {}", figure, limit);
+  if (criterion.relation == "=") out = fmt::format("{}, wanted: {}", figure, limit);
   if (!criterion.note.empty()) append(out, criterion.note, "; ");
   return out;
 }

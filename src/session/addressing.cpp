@@ -46,10 +46,12 @@ std::uint8_t sender_of(const can::Frame& frame) {
   }
 }
 
+constexpr std::string_view kItAnswers = "it answers";
+
 std::string_view what_it_sends(const can::Frame& frame) {
   const auto service = frame.id & ~0x7FU;
-  if (service == canopen::kErrorControl) return "sends heartbeats";
-  return service == canopen::kSdoAnswer ? "answers" : "sends PDOs or emergencies";
+  if (service == canopen::kErrorControl) return "it sends heartbeats";
+  return service == canopen::kSdoAnswer ? kItAnswers : "it sends PDOs or emergencies";
 }
 
 bool has_answered(const Result<Bytes>& answer) {
@@ -75,7 +77,7 @@ Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
     const OptionScope once(session, &Options::retries, 0U);
     const auto found = session.transfer(questions);
     for (std::size_t i = 0; i < found.size(); ++i) {
-      if (has_answered(found[i])) out[questions[i].node] = "answers";
+      if (has_answered(found[i])) out[questions[i].node] = kItAnswers;
       if (!found[i] && (found[i].error().code == Errc::bus || found[i].error().code == Errc::interrupted))
         return fail(found[i].error());
     }
@@ -83,7 +85,7 @@ Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
   const auto waited = session.wait([&] { return out.size() == wanted.size(); }, until);
   if (!waited) return fail(waited.error());
   const auto own = can->heartbeat_node();
-  if (own && wanted.count(*own) > 0) out[*own] = "carries servoctl's own heartbeat";
+  if (own && wanted.count(*own) > 0) out[*own] = "it carries servoctl's own heartbeat";
   return out;
 }
 

@@ -15,8 +15,7 @@ namespace servoctl::session {
 /// heartbeats send one at least so often.
 inline constexpr Duration kAddressListening = std::chrono::milliseconds(1500);
 
-/// Which of these node-IDs somebody uses, and what shows it: `answers`, `sends heartbeats`, `sends PDOs or
-/// emergencies`, `carries servoctl's own heartbeat`. All are asked once at the same time, and the bus is
+/// Which of these node-IDs somebody uses, and what shows it: `it answers`, `it sends heartbeats`. All are asked once at the same time, and the bus is
 /// listened to for `listening`. Errors of the bus. On a network without node-IDs of its own nobody uses any.
 Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
                                                          std::span<const std::uint8_t> nodes,

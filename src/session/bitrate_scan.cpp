@@ -4,7 +4,6 @@
 #include <cerrno>
 
 #include "drive/bitrate.hpp"
-#include "session/bitrate_search.hpp"
 #include "session/scan.hpp"
 
 namespace servoctl::session {
@@ -19,8 +18,9 @@ Result<bool> tune(Session& session, can::LinkControl& link, std::uint32_t bitrat
   const auto set = link.change({.up = true, .bitrate = bitrate});
   if (!set && set.error().code == Errc::usage) return false;
   if (!set) return fail(set.error());
-  if (const auto back = session.network().recover(session.now() + kComingUp); !back)
-    return fail(back.error());
+  const auto back = session.network().recover(session.now() + kComingUp);
+  if (!back && back.error().code == Errc::usage) return false;
+  if (!back) return fail(back.error());
   return true;
 }
 
@@ -47,12 +47,13 @@ Result<Asked> ask_at(Session& session, can::LinkControl& link, std::span<const s
 
 }  // namespace
 
-Result<void> hold_silence(can::LinkControl& link, Duration time, const std::function<bool()>& cancelled) {
+Result<void> hold_silence(can::LinkControl& link, Duration time, const std::function<bool()>& cancelled,
+                          const Listening& listening) {
   const auto state = link.state();
   if (!state) return fail(state.error());
   const auto bus = link.listen();
   if (!bus) return fail(bus.error());
-  const auto heard = hear(**bus, time, cancelled);
+  const auto heard = hear(**bus, time, cancelled, listening);
   if (!heard) return fail(heard.error());
   if (heard->frames == 0 && heard->errors == 0) return {};
   const auto at = state->bitrate ? drive::bitrate_text(*state->bitrate) : "its bitrate";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "can/link_change.hpp"
+#include "session/bitrate_search.hpp"
 #include "session/identity.hpp"
 #include "session/session.hpp"
 
@@ -28,7 +29,8 @@ struct BitrateScan {
 };
 
 /// Listens at the present bitrate: Errc::refused when anything is heard, frames or errors.
-Result<void> hold_silence(can::LinkControl& link, Duration time, const std::function<bool()>& cancelled);
+Result<void> hold_silence(can::LinkControl& link, Duration time, const std::function<bool()>& cancelled,
+                          const Listening& listening = {});
 
 /// Asks at each bitrate, until nodes answer. The interface stays at the bitrate where they do; where none
 /// does, or on any other way out, it is put back to what it was, and the session with it. Errc::interrupted

@@ -73,7 +73,7 @@ class Searching {
     }
     const auto bus = link_->listen();
     if (!bus) return fail(bus.error());
-    auto heard = hear(**bus, options_->each, options_->cancelled);
+    auto heard = hear(**bus, options_->each, options_->cancelled, options_->listening);
     if (!heard) return heard;
     heard->bitrate = bitrate;
     heard->errors = std::max(heard->errors, counted_errors());
@@ -117,11 +117,14 @@ std::span<const std::uint32_t> usual_bitrates() {
   return kUsual;
 }
 
-Result<Heard> hear(can::Bus& bus, Duration time, const std::function<bool()>& cancelled) {
+Result<Heard> hear(can::Bus& bus, Duration time, const std::function<bool()>& cancelled,
+                   const Listening& listening) {
   Heard out;
-  const auto end = bus.now() + time;
+  const auto begin = bus.now();
+  const auto end = begin + time;
   while (bus.now() < end && out.frames < kClearFrames && (out.frames > 0 || out.errors < kClearErrors)) {
     if (cancelled && cancelled()) return fail(stopped_by_user());
+    if (listening) listening(std::chrono::duration<double>(bus.now() - begin) / time, begin, bus.now());
     const auto frame = bus.receive(std::min(end, bus.now() + kLook));
     if (!frame) return fail(frame.error());
     if (!*frame) continue;

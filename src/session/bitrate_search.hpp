@@ -33,11 +33,15 @@ std::string_view name(Heard::Verdict verdict);
 /// In bit/s: those of CiA 301, 5.2, and 100 kbit/s, which is in use as well; the likely ones first.
 std::span<const std::uint32_t> usual_bitrates();
 
+/// Told while it listens how much of that is done, on the clock of the interface.
+using Listening = std::function<void(double share, TimePoint begin, TimePoint now)>;
+
 struct SearchOptions {
   std::vector<std::uint32_t> bitrates;
   Duration each = std::chrono::seconds(2);      ///< How long it listens at one; a heartbeat has to fit in.
   std::function<bool()> cancelled = {};         ///< Asked in every wait; may be empty.
   std::function<void(const Heard&)> told = {};  ///< Each as it is known; may be empty.
+  Listening listening = {};                     ///< Of each; may be empty.
 };
 
 struct Search {
@@ -53,6 +57,7 @@ Result<Search> search_bitrate(can::LinkControl& link, const SearchOptions& optio
 
 /// Listens for so long to what passes, as the interface is now: frames of this machine as well. Ends as soon
 /// as the verdict is clear.
-Result<Heard> hear(can::Bus& bus, Duration time, const std::function<bool()>& cancelled);
+Result<Heard> hear(can::Bus& bus, Duration time, const std::function<bool()>& cancelled,
+                   const Listening& listening = {});
 
 }  // namespace servoctl::session

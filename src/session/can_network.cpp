@@ -115,30 +115,6 @@ void CanNetwork::dispatch(const can::Frame& frame) {
     channel->on_frame(frame, stepped_at_);
 }
 
-Result<void> CanNetwork::send_heartbeat(std::uint8_t node) {
-  return send(canopen::heartbeat_frame(node, NmtState::operational));
-}
-
-Result<TimePoint> CanNetwork::send_heartbeat() {
-  if (!heartbeat_) return kNever;
-  const auto time = now();
-  if (time < heartbeat_->next) return heartbeat_->next;
-  heartbeat_->next = time + heartbeat_->period;
-  if (const auto sent = bus_->send(canopen::heartbeat_frame(heartbeat_->node, NmtState::operational)); !sent)
-    return fail(sent.error());
-  return heartbeat_->next;
-}
-
-Result<TimePoint> CanNetwork::send_sync() {
-  if (!sync_) return kNever;
-  sync_->producer.on_time(now());
-  if (const auto frame = sync_->producer.take_frame()) {
-    if (const auto sent = bus_->send(*frame); !sent) return fail(sent.error());
-    sync_->rhythm.add(now());
-  }
-  return sync_->producer.deadline();
-}
-
 Result<void> CanNetwork::on_report(can::ControllerReport report) {
   if (report == can::ControllerReport::bus_off) {
     last_report_.reset();
@@ -175,10 +151,9 @@ std::string CanNetwork::silence_hint(std::uint8_t node) const {
 }
 
 std::string CanNetwork::state_order(NodeState state) const {
-  const auto* word = state == NodeState::operational ? "start"
-                     : state == NodeState::stopped   ? "stop"
-                                                     : "enter pre-operational";
-  return fmt::format("NMT \"{}\"", word);
+  return state == NodeState::operational ? "NMT \"start\""
+         : state == NodeState::stopped   ? "NMT \"stop\""
+                                         : "NMT \"enter pre-operational\"";
 }
 
 std::string CanNetwork::state_command(std::uint8_t node, NodeState state) const {
@@ -208,6 +183,16 @@ std::optional<NodeEvent> CanNetwork::take_event() {
   auto out = std::move(events_.front());
   events_.pop_front();
   return out;
+}
+
+Result<void> CanNetwork::send(const can::Frame& frame) {
+  duplicates_.on_sent(frame, now());
+  watch_.on_sent(frame);
+  const auto sent = bus_->send(frame);
+  if (ordered_ && sent)
+    if (const auto order = canopen::parse_nmt(frame))
+      ordered_(order->node, fmt::format("NMT \"{}\"", canopen::name(order->command)));
+  return sent;
 }
 
 Result<void> CanNetwork::request_state(std::uint8_t node, NodeState state) {
@@ -258,10 +243,15 @@ void CanNetwork::send_last_word(std::uint8_t node, ObjectAddress object, std::ui
   }
 }
 
+const CanNetwork::KnownPdos* CanNetwork::known_pdos(std::uint8_t node) const {
+  const auto known = pdos_.find(node);
+  return known == pdos_.end() || known->second.boots != watch_.boots(node) ? nullptr : &known->second;
+}
+
 std::unique_ptr<ProcessValues> CanNetwork::process_values(std::uint8_t node,
                                                           std::span<const ObjectAddress> objects) {
   const auto known = pdos_.find(node);
-  const auto pdos = known == pdos_.end() ? std::span<const canopen::Pdo>() : std::span(known->second);
+  const auto pdos = known == pdos_.end() ? std::span<const canopen::Pdo>() : std::span(known->second.pdos);
   return std::make_unique<TpdoValues>(*this, pdos, objects);
 }
 

@@ -47,6 +47,7 @@ class CanNetwork final : public Network {
   Result<bool> step(TimePoint deadline) override;
   TimePoint stepped_at() const override { return stepped_at_; }
   TimePoint next_event() const override;
+  TimePoint keep_up() override;
   int poll_fd() const override { return bus_->poll_fd(); }
   Result<void> recover(TimePoint deadline) override { return bus_->recover(deadline); }
   std::unique_ptr<ObjectChannel> object_channel(std::uint8_t node, Duration timeout) override;
@@ -76,11 +77,7 @@ class CanNetwork final : public Network {
   CanNetwork* can() override { return this; }
 
   /// Sends a frame of any kind. Errors as can::Bus::send().
-  Result<void> send(const can::Frame& frame) {
-    duplicates_.on_sent(frame, now());
-    watch_.on_sent(frame);
-    return bus_->send(frame);
-  }
+  Result<void> send(const can::Frame& frame);
   /// The frame that the last step took in; empty when it took none.
   const std::optional<can::Frame>& frame() const { return frame_; }
   can::Bus& bus() { return *bus_; }
@@ -90,8 +87,21 @@ class CanNetwork final : public Network {
   canopen::NodeWatch& watch() { return watch_; }
   /// Whether two nodes have one number.
   canopen::DuplicateWatch& duplicates() { return duplicates_; }
+  /// PDOs of a node as they were read.
+  struct KnownPdos {
+    std::vector<canopen::Pdo> pdos;
+    TimePoint time{};
+    std::uint32_t boots = 0;  ///< How often the node had been heard to start.
+  };
   /// The PDOs that a node has, all of them: process_values() takes their TPDOs for its own.
-  void learn_pdos(std::uint8_t node, std::vector<canopen::Pdo> pdos) { pdos_[node] = std::move(pdos); }
+  void learn_pdos(std::uint8_t node, std::vector<canopen::Pdo> pdos) {
+    pdos_[node] = {std::move(pdos), now(), watch_.boots(node)};
+  }
+  /// What was learned last; null where nothing was, and once the node has restarted or forget_pdos() was
+  /// told.
+  const KnownPdos* known_pdos(std::uint8_t node) const;
+  /// Somebody writes to what describes them.
+  void forget_pdos(std::uint8_t node) { pdos_.erase(node); }
 
   /// Guards a node in every step from now on; what is noticed is among the events.
   void guard(std::uint8_t node, canopen::GuardOptions options);
@@ -162,7 +172,7 @@ class CanNetwork final : public Network {
   std::optional<SyncProduction> sync_;
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
-  std::map<std::uint8_t, std::vector<canopen::Pdo>> pdos_;
+  std::map<std::uint8_t, KnownPdos> pdos_;
   std::vector<const OnFrame*> listeners_;
   std::array<CanObjectChannel*, 128> channels_{};  ///< The first of each node.
   std::deque<NodeEvent> events_;

@@ -262,6 +262,7 @@ Result<void> EtherCatNetwork::bring_up(EtherCatNode& node) {
 Result<ethercat::AlStatus> EtherCatNetwork::go_to(EtherCatNode& node, AlState state) {
   ethercat::AlRequest request(node.number, node.address());
   request.start(state, now());
+  if (ordered_) ordered_(node.number, state_order(node_state(state)));
   auto there = wire_.ask(request);
   if (there) {
     hear(node, *there, now(), true);

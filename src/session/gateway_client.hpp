@@ -28,6 +28,7 @@ struct GatewayClient {
   std::optional<Order> order;
   std::optional<std::uint8_t> node;  ///< By `set node`.
   Duration timeout = std::chrono::milliseconds(500);
+  bool is_cut = false;      ///< It ended behind a line without an end.
   bool blocks = false;      ///< By `set sdo_block`.
   bool ended = false;       ///< It says nothing more.
   std::size_t refused = 0;  ///< Requests that were refused because it may only read.

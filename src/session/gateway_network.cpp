@@ -27,10 +27,8 @@ class NothingTold final : public ProcessValues {
   std::vector<Arrival> take_all() override { return {}; }
 };
 
-std::string timeout_line(Duration timeout) {
-  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout).count();
-  return fmt::format("set sdo_timeout {}", std::clamp<std::int64_t>(ms, 1, 65'535));
-}
+/// The gateway's answer where a command needs a network, and none was set (CiA 309-3).
+constexpr std::uint32_t kNoDefaultNet = 104;
 
 std::string_view word_of(canopen::NmtCommand command) {
   switch (command) {
@@ -63,10 +61,22 @@ Result<std::unique_ptr<GatewayNetwork>> GatewayNetwork::open(const std::string& 
 
 GatewayNetwork::~GatewayNetwork() = default;
 
-/// What answers this is a gateway, whatever the answer.
+std::string GatewayNetwork::timeout_line() const {
+  const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
+  const auto line = fmt::format("set sdo_timeout {}", std::clamp<std::int64_t>(ms, 1, 65'535));
+  return names_network_ ? fmt::format("{} {}", address_.network, line) : line;
+}
+
+/// What answers this is a gateway, whatever the answer. CANopenNode has the timeout for all networks and
+/// knows no network in front of it, lely-core one for each.
 Result<void> GatewayNetwork::introduce() {
   timeout_ = std::chrono::milliseconds(500);
-  const auto answer = ask(timeout_line(timeout_), kAnswerPatience);
+  names_network_ = false;
+  auto answer = ask(timeout_line(), kAnswerPatience);
+  if (answer && answer->kind == gateway::Answer::Kind::error && answer->number == kNoDefaultNet) {
+    names_network_ = true;
+    answer = ask(timeout_line(), kAnswerPatience);
+  }
   if (!answer && answer.error().code == Errc::timeout)
     return fail(Errc::bus, fmt::format("{} does not answer as a gateway of CiA 309-3", url_),
                 "does it serve another client? canopend serves one at a time");
@@ -106,6 +116,13 @@ Error GatewayNetwork::gone() const {
                     "the next line connects anew");
 }
 
+Error GatewayNetwork::silent() const {
+  return make_error(
+      Errc::bus, fmt::format("{} does not answer any more", url_),
+      "check cable and network, and whether it hangs or serves another client (canopend serves one at a "
+      "time); the next line connects anew");
+}
+
 /// Whoever asked is told by who steps: the connection is lost for all of them.
 Result<void> GatewayNetwork::lose(Error error) {
   begin_anew();
@@ -126,7 +143,7 @@ Result<void> GatewayNetwork::pump() {
   if (takes_timeout_ && next->timeout() != timeout_) {
     timeout_ = next->timeout();
     setting_timeout_ = true;
-    return start(timeout_line(timeout_), kAnswerPatience);
+    return start(timeout_line(), kAnswerPatience);
   }
   waiting_.pop_front();
   asking_ = next;
@@ -151,6 +168,8 @@ Result<bool> GatewayNetwork::step(TimePoint deadline) {
   client_.on_bytes(bytes, stepped_at_);
   client_.on_time(stepped_at_);
   const auto outcome = client_.take_outcome();
+  // It has told of every node that does not answer: one that tells nothing is away, for all who ask.
+  if (outcome && outcome->silent && asking_ != nullptr) return fail(lose(silent()).error());
   if (outcome) hand_over(*outcome);
   if (!received && !outcome) return fail(lose(received.error()).error());
   if (client_.is_broken())
@@ -197,7 +216,10 @@ Result<void> GatewayNetwork::command(std::uint8_t node, canopen::NmtCommand comm
   const auto line = command_line(node, command);
   const auto answer = ask(line, kAnswerPatience);
   if (!answer) return fail(answer.error());
-  if (answer->kind == gateway::Answer::Kind::ok) return {};
+  if (answer->kind == gateway::Answer::Kind::ok) {
+    if (ordered_) ordered_(node, fmt::format("NMT \"{}\"", canopen::name(command)));
+    return {};
+  }
   return fail(Errc::refused,
               fmt::format("the gateway answers '{}' to '{}': {} {}", answer->number, line,
                           gateway::code_text(answer->number), printable(answer->text)),

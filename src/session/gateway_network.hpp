@@ -92,12 +92,14 @@ class GatewayNetwork final : public Network {
   Result<void> start(std::string_view request, Duration patience);
   Result<void> lose(Error error);
   Error gone() const;
+  Error silent() const;
   void leave(GatewayObjectChannel& channel);
   void begin_anew();
   void hand_over(const gateway::Client::Outcome& outcome);
   /// Waits for the answer to a request of its own.
   Result<gateway::Answer> ask(std::string_view request, Duration patience);
   Result<void> introduce();
+  std::string timeout_line() const;
 
   std::optional<gateway::Connection> connection_;  ///< None while it is lost.
   gateway::Address address_;
@@ -111,6 +113,7 @@ class GatewayNetwork final : public Network {
   std::optional<gateway::Answer> own_;         ///< To the last request of its own.
   Duration timeout_{};                         ///< The SDO timeout that the gateway was told.
   bool takes_timeout_ = true;                  ///< It knows `set sdo_timeout`.
+  bool names_network_ = false;                 ///< In front of it.
   TimePoint stepped_at_ = steady_now();
 };
 

@@ -67,8 +67,11 @@ Error GatewayObjectChannel::refusal(const gateway::Answer& answer) const {
     error.abort_code = answer.number;
     return error;
   }
-  const auto what = fmt::format("the gateway answers {} ({}) {}", answer.number,
-                                gateway::code_text(answer.number), printable(answer.text));
+  const auto meaning = gateway::code_text(answer.number);
+  const bool says_more = answer.text.find(meaning) == std::string::npos;
+  const auto what = says_more ? fmt::format("the gateway answers {} ({}) {}", answer.number, meaning,
+                                            printable(answer.text))
+                              : fmt::format("the gateway answers {} ({})", answer.number, meaning);
   switch (static_cast<gateway::Code>(answer.number)) {
     case gateway::Code::timeout: return drive_error(Errc::timeout, node_, object_, what);
     case gateway::Code::internal_state:
@@ -86,9 +89,6 @@ Error GatewayObjectChannel::refusal(const gateway::Answer& answer) const {
 
 Result<Bytes> GatewayObjectChannel::result_of(const gateway::Client::Outcome& outcome) const {
   using Kind = gateway::Answer::Kind;
-  if (outcome.silent)
-    return fail(drive_error(Errc::timeout, node_, object_, "the gateway did not answer",
-                            "does it serve another client? canopend serves one at a time"));
   const auto& answer = outcome.answer;
   if (answer.kind == Kind::error || answer.kind == Kind::abort) return fail(refusal(answer));
   if (writes_ && answer.kind == Kind::ok) return Bytes();

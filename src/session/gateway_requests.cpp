@@ -79,6 +79,8 @@ void GatewayServer::handle(Client& client, const gateway::LineReader::Line& line
   const auto first = std::vector<std::string>{line.text.substr(0, end)};
   const auto request = gateway::take_apart(words ? *words : first);
   const auto sequence = request.sequence.value_or(0);
+  const auto service = gateway::service_of(request);
+  const bool changes = service == Service::write || is_command(service);
   if (line.too_long)
     client.out += error_line(sequence, Code::syntax,
                              fmt::format("a line has {} bytes at most", gateway::LineReader::kLongest));
@@ -86,6 +88,8 @@ void GatewayServer::handle(Client& client, const gateway::LineReader::Line& line
     client.out += error_line(sequence, Code::syntax, "a quote stands alone");
   else if (!request.sequence)
     client.out += error_line(0, Code::syntax, "a line begins with its number: [1]");
+  else if (changes && client.is_cut && !client.in.has_line())
+    client.out += error_line(sequence, Code::syntax, "the line has no end: it may have been cut short");
   else
     answer(client, sequence, request);
 }

@@ -20,7 +20,8 @@ void GatewayServer::on_end(int who) {
   auto& client = clients_[who];
   client.ended = true;
   // A last line may have no end.
-  if (client.in.pending() > 0) client.in.put("\n");
+  client.is_cut = client.in.pending() > 0;
+  if (client.is_cut) client.in.put("\n");
 }
 
 void GatewayServer::on_lost(int who) {
@@ -92,7 +93,8 @@ void GatewayServer::start(int who, Client& client) {
   channel->set_timeout(client.timeout);
   if (request.data) {
     // Noted before it is sent: from then on no signal ends the process before the drive is let go.
-    if (drive::is_enabling_write(request.object, *request.data)) {
+    if (drive::is_enabling_write(request.object, *request.data) ||
+        (options_.energises && options_.energises(request.node, request.object, *request.data))) {
       session_->energised().insert(request.node);
       energised_[request.node] = who;
     }
@@ -102,7 +104,7 @@ void GatewayServer::start(int who, Client& client) {
   }
   client.order->started = true;
   served_last_ = who;
-  lanes_[request.node] = {std::move(channel), who};
+  lanes_[request.node] = {std::move(channel), who, session_->now()};
 }
 
 Result<void> GatewayServer::serve_lane(std::uint8_t node, Lane& lane) {
@@ -111,8 +113,18 @@ Result<void> GatewayServer::serve_lane(std::uint8_t node, Lane& lane) {
   if (!result) return {};
   session_->give_back(node, std::move(lane.channel));
   lane.channel.reset();
+  tell(node, lane, *result);
   finish(lane, *result);
   return {};
+}
+
+void GatewayServer::tell(std::uint8_t node, const Lane& lane, const Result<Bytes>& result) const {
+  const auto& exchanged = session_->options().exchanged;
+  const auto client = clients_.find(lane.who);
+  if (!exchanged || client == clients_.end() || !client->second.order) return;
+  const auto& request = client->second.order->request;
+  exchanged({*session_, node, request.object, request.data ? &*request.data : nullptr, result, lane.begun,
+             session_->now()});
 }
 
 void GatewayServer::finish(const Lane& lane, const Result<Bytes>& result) {

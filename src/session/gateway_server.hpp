@@ -21,8 +21,8 @@ namespace servoctl::session {
 /// out. The requests of one client are carried out one after the other, those of several at the same time
 /// where they concern different nodes. No I/O but on the network.
 ///
-/// A drive that a client enabled by its controlword is that client's: when it goes, `Options::stop` is called
-/// for it, and nothing else is begun meanwhile.
+/// A drive that a client enabled by its controlword, or by what `Options::energises` knows, is that client's:
+/// when it goes, `Options::stop` is called for it, and nothing else is begun meanwhile.
 class GatewayServer {
  public:
   struct Options {
@@ -30,6 +30,9 @@ class GatewayServer {
     std::string version;  ///< Of this program, for `info version`: `0.1`.
     /// A line for who looks on; may be empty.
     std::function<void(std::string_view line)> tell;
+    /// Whether a write energises a drive, or sets it in motion, besides by 6040h; may be empty. Asked once
+    /// for each write, before it is sent.
+    std::function<bool(std::uint8_t node, ObjectAddress object, ByteSpan data)> energises;
     /// Takes the power of these drives, and returns when that is done or told; may be empty.
     std::function<void(const std::set<std::uint8_t>& nodes)> stop;
   };
@@ -67,6 +70,7 @@ class GatewayServer {
   struct Lane {
     std::unique_ptr<ObjectChannel> channel;
     int who = 0;
+    TimePoint begun{};
   };
 
   void take_lines(Client& client);
@@ -80,6 +84,7 @@ class GatewayServer {
   void start_orders();
   void start(int who, Client& client);
   Result<void> serve_lane(std::uint8_t node, Lane& lane);
+  void tell(std::uint8_t node, const Lane& lane, const Result<Bytes>& result) const;
   void finish(const Lane& lane, const Result<Bytes>& result);
   /// Whether there was one.
   bool stop_abandoned();

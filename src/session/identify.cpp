@@ -136,7 +136,8 @@ Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> n
   auto* can = session.can();
   if (can == nullptr) return {};
   auto& duplicates = can->duplicates();
-  const auto patience = std::clamp<Duration>(2 * duplicates.slowest_answer(), least, kThoroughly);
+  const auto patience =
+      std::max<Duration>(least, std::min<Duration>(2 * duplicates.slowest_answer(), kThoroughly));
   const auto since = duplicates.last_answer().value_or(session.now());
   if (const auto heard = listen_until(session, since + patience); !heard) return heard;
   std::vector<SdoRequest> requests;
@@ -160,8 +161,8 @@ Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
       fmt::format("two nodes answer with this node-ID ({}): writes and motion are refused", by),
       fmt::format(
           "disconnect one and give it another node-ID, then `scan` (drives with LSS take one by their serial numbers: "
-          "`help lss set-node`); `disable -n {}` and `nmt stop` reach both",
-          node)));
+          "`help lss set-node`); `disable -n {}` and `nmt stop -n {}` reach both",
+          node, node)));
 }
 
 }  // namespace servoctl::session

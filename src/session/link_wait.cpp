@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/duration.hpp"
+#include "base/number.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -16,7 +17,7 @@ constexpr Duration kFlicker = std::chrono::milliseconds(10);
 constexpr Duration kPause = std::chrono::milliseconds(5);
 
 std::string tenths(Duration time) {
-  return fmt::format("{:.2g} s", std::chrono::duration<double>(time).count());
+  return plain_number(std::chrono::duration<double>(time).count(), 2) + " s";
 }
 
 }  // namespace
@@ -27,18 +28,26 @@ void LinkWait::tell(const std::string& line) const {
 
 bool LinkWait::comes_back(const Error& lost) {
   const auto since = session_->now();
+  const bool again = first_.has_value() && only_failing_;
   if (!first_) first_ = since;
   if (since - *first_ >= (only_failing_ ? kPatience : kMost)) return false;
-  tell(fmt::format("{}: {} waits for the bus, at most {}", lost.message, doing_,
-                   servoctl::to_string(kPatience)));
+  if (again)
+    tell(fmt::format("{}: {} is still tried after {}", lost.message, doing_, tenths(since - *first_)));
+  else
+    tell(fmt::format("{}: {} waits for the bus, at most {}", lost.message, doing_,
+                     servoctl::to_string(kPatience)));
   const auto end = since + kPatience;
   for (;;) {
     const auto asked = session_->now();
     const auto back = session_->network().recover(std::min(asked + kTelling, end));
     const auto time = session_->now();
     if (back) {
-      only_failing_ = only_failing_ && time - since < kFlicker;
-      tell(fmt::format("{} is back after {}: now {}", session_->url(), tenths(time - since), doing_));
+      const bool was_lost = time - since >= kFlicker;
+      only_failing_ = only_failing_ && !was_lost;
+      if (was_lost)
+        tell(fmt::format("{} is back after {}: now {}", session_->url(), tenths(time - since), doing_));
+      else if (!again)
+        tell(fmt::format("{} can be opened: now {}", session_->url(), doing_));
       return true;
     }
     if (time >= end || time < asked + kPause) {

@@ -3,9 +3,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "canopen/lss_master.hpp"
@@ -28,6 +30,15 @@ struct LssFound {
   std::size_t slaves = 1;  ///< That say it is they: more than 1 have one identity.
   /// The node-ID that it has or is to have, 1..127: some slaves answer fastscan with one, too.
   std::optional<std::uint8_t> node = {};
+};
+
+/// Where a scan is. How many slaves there are nobody knows; of the identity that is looked for next it is
+/// known how many of its bits are found.
+struct LssProgress {
+  std::size_t found = 0;
+  std::uint32_t known = 0;
+  std::uint32_t bits = 0;
+  bool again = false;  ///< Answers were lost or late: the scan has begun anew, with more patience.
 };
 
 /// servoctl as the LSS master (CiA 305) of the session's CAN bus, until it is destroyed: on every way out all
@@ -87,6 +98,13 @@ class LssDialogue {
   Result<std::vector<canopen::LssAddress>> search(const canopen::LssAddress& low,
                                                   const canopen::LssAddress& high);
 
+  /// Told at each step of a scan or a search; may be empty.
+  void on_progress(std::function<void(const LssProgress&)> told) { told_ = std::move(told); }
+  void tell(LssProgress progress) const {
+    progress.again = again_;
+    if (told_) told_(progress);
+  }
+
   /// All slaves go back to the waiting state, and whether one has not is asked: Errc::negative then, with
   /// what to do. Not heard by Ctrl-C. Sends nothing where nothing was asked since the last time.
   Result<void> leave();
@@ -109,6 +127,8 @@ class LssDialogue {
   bool touched_ = false;  ///< A slave may be in the configuration state.
   bool foreign_ = false;  ///< Another master was heard.
   Protection::Hold hold_;
+  std::function<void(const LssProgress&)> told_;
+  bool again_ = false;
 };
 
 }  // namespace servoctl::session

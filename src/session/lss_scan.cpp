@@ -1,6 +1,7 @@
 // How a session finds LSS slaves: by walks through the tree of identities.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <iterator>
 #include <utility>
 
@@ -20,6 +21,8 @@ constexpr Duration kHaste = std::chrono::milliseconds(10);
 constexpr std::size_t kMostSlaves = 127;
 constexpr std::uint8_t kTopBit = 31;
 constexpr std::uint8_t kLastPart = 3;
+constexpr std::uint32_t kBitsOfNumber = 32;
+constexpr std::uint32_t kBitsOfIdentity = 128;
 
 tl::unexpected<Error> lost_answer() {
   return fail(
@@ -42,6 +45,12 @@ std::pair<LssAddress, LssAddress> inner_ends(const LssAddress& low, const LssAdd
   auto begin = low;
   begin.*part = end.*part + 1;
   return {end, begin};
+}
+
+/// Bits that are still open between two identities of one kind.
+std::uint32_t open_bits(const LssAddress& low, const LssAddress& high) {
+  return static_cast<std::uint32_t>(std::bit_width(high.revision - low.revision) +
+                                    std::bit_width(high.serial - low.serial));
 }
 
 /// One walk of LSS fastscan: every identity that somebody without a node-ID has, in ascending order. Nobody
@@ -77,6 +86,7 @@ class FastscanWalk {
 
   /// Whether somebody has these bits of the number, from `bit` on upwards.
   Result<bool> walk(std::uint8_t part, std::uint32_t number, std::uint8_t bit) {
+    lss_->tell({found_.size(), kBitsOfNumber * part + kTopBit - bit, kBitsOfIdentity});
     const auto answers = probe({number, bit, part, part});
     if (!answers) return fail(answers.error());
     if (*answers == 0) return false;
@@ -137,9 +147,12 @@ Result<std::vector<LssFound>> LssDialogue::scan() {
   Error last;
   for (const auto pace : paces()) {
     if (const auto sent = send_to_waiting(); !sent) return fail(sent.error());
+    again_ = last.code == Errc::protocol;
     auto found = FastscanWalk(*this, pace).run();
     const auto there = found ? confirm(*found) : fail(found.error());
-    if (there) return found;
+    // Nobody, behind walks in which somebody answered, is no result.
+    if (there && !(found->empty() && last.code == Errc::protocol)) return found;
+    if (there) break;
     last = there.error();
     if (last.code != Errc::protocol) break;
   }
@@ -174,6 +187,7 @@ Result<void> LssDialogue::confirm(std::vector<LssFound>& found) {
 /// answer was lost.
 Result<bool> LssDialogue::search_between(const LssAddress& low, const LssAddress& high, Pace pace,
                                          std::vector<LssAddress>& found) {
+  tell({found.size(), kBitsOfIdentity - open_bits(low, high), kBitsOfIdentity});
   const auto answers = probe(canopen::lss_identify(low, high), pace);
   if (!answers) return fail(answers.error());
   if (*answers == 0) return false;
@@ -193,6 +207,7 @@ Result<std::vector<LssAddress>> LssDialogue::search(const LssAddress& low, const
   Error last;
   for (const auto pace : paces()) {
     if (const auto sent = send_to_waiting(); !sent) return fail(sent.error());
+    again_ = last.code == Errc::protocol;
     std::vector<LssAddress> out;
     const auto any = search_between(low, high, pace, out);
     if (any) return out;

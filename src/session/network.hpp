@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "base/bytes.hpp"
@@ -132,6 +133,9 @@ class Network {
   virtual TimePoint stepped_at() const = 0;
   /// When step() has something to do although nothing arrives from outside; kNever when it has not.
   virtual TimePoint next_event() const = 0;
+  /// While something else is waited for and nothing can be taken in: sends what is sent regularly and is due.
+  /// When it is to be called again; what is not later than now() is for step() alone.
+  virtual TimePoint keep_up() { return must_go_on() ? now() : kNever; }
   /// A descriptor that becomes readable when step() has something to take in, for a poll loop; -1: none.
   virtual int poll_fd() const { return -1; }
   /// After Errc::bus: waits until `deadline` at most for the network to come back. Errc::bus while it is not
@@ -150,6 +154,11 @@ class Network {
   /// Commands a state change of the node; whether something confirms it is the network's own. Errc::usage for
   /// a state that this network has no word for, Errc::bus when it is not sent.
   virtual Result<void> request_state(std::uint8_t node, NodeState state) = 0;
+  /// Who is told of every command for the state of a node that has gone out, in the words of state_order();
+  /// node 0: every node. May be empty.
+  void set_ordered(std::function<void(std::uint8_t node, std::string_view order)> told) {
+    ordered_ = std::move(told);
+  }
   /// Asks the node for its state where that is a question of its own; the answer goes to records().
   virtual Result<void> ask_state(std::uint8_t node) = 0;
   /// The node is told to change its state: what was heard of it is no longer known to be so, unless it goes
@@ -212,6 +221,9 @@ class Network {
   virtual ModbusNetwork* modbus() { return nullptr; }
   /// What only a gateway of CiA 309-3 has; null elsewhere.
   virtual GatewayNetwork* gateway() { return nullptr; }
+
+ protected:
+  std::function<void(std::uint8_t node, std::string_view order)> ordered_;
 };
 
 }  // namespace servoctl::session

@@ -27,11 +27,17 @@ class OptionScope {
   Value before_;
 };
 
-/// While it lives the session does not hear Ctrl-C: what was begun at a drive is put in order first. Waits
-/// stay as short as they are, so the user is not kept for longer than a few timeouts.
-class Deaf : public OptionScope<std::function<bool()>> {
+/// While it lives the session does not hear Ctrl-C, and a second one does not end the process: what was begun
+/// at a drive is put in order first. Waits stay as short as they are, so the user is not kept for longer than
+/// a few timeouts.
+class Deaf {
  public:
-  explicit Deaf(Session& session) : OptionScope(session, &Options::cancelled, {}) {}
+  explicit Deaf(Session& session)
+      : cancelled_(session, &Options::cancelled, {}), hold_(session.protect(Care::unsettled)) {}
+
+ private:
+  OptionScope<std::function<bool()>> cancelled_;
+  Protection::Hold hold_;
 };
 
 /// While it lives the session waits no longer than this for one answer, and asks no more often.

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "drive/naming.hpp"
+#include "session/can_network.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -201,7 +202,11 @@ std::vector<Result<Values>> read_pdo_values(Session& session, const drive::Profi
     reading.drop_missing(profile->dictionary);
   }
   reading.read_entries();
-  return std::move(reading).take();
+  auto out = std::move(reading).take();
+  if (auto* can = session.can())
+    for (std::size_t i = 0; i < out.size(); ++i)
+      if (out[i]) can->learn_pdos(nodes[i], pdos_of(*out[i]));
+  return out;
 }
 
 std::vector<Pdo> pdos_of(const Values& values) {

@@ -16,7 +16,7 @@ namespace servoctl::session {
 /// Where the profile knows PDOs, those are read, and one the drive refuses is left out; without a profile
 /// (may be null), or with one that knows none, the numbers are tried from 1 until several in a row are not
 /// there. Of a mapping only the entries in use are read. A node that does not answer to the end has an error
-/// instead.
+/// instead. What a node has is told to CanNetwork::learn_pdos().
 std::vector<Result<Values>> read_pdo_values(Session& session, const drive::Profile* profile,
                                             std::span<const std::uint8_t> nodes);
 

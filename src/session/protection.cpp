@@ -3,7 +3,7 @@
 namespace servoctl::session {
 
 Care Protection::highest() const {
-  for (const auto care : {Care::guarded, Care::energised})
+  for (const auto care : {Care::guarded, Care::energised, Care::unsettled})
     if (held_[static_cast<std::size_t>(care)] > 0) return care;
   return Care::none;
 }

@@ -13,6 +13,7 @@ namespace servoctl::session {
 /// What would be left alone if the process ended now; the worst of it.
 enum class Care : std::uint8_t {
   none,
+  unsettled,  ///< Something was begun at a drive, or with an interface, and is put in order.
   energised,  ///< A drive that was left energised knowingly.
   guarded,    ///< A drive in motion, or on its way out of one.
 };
@@ -65,7 +66,7 @@ class Protection {
 
   OnChange on_change_;
   mutable std::mutex mutex_;
-  std::array<std::size_t, 3> held_{};  ///< By Care. Under the mutex.
+  std::array<std::size_t, 4> held_{};  ///< By Care. Under the mutex.
 };
 
 /// The drives that were left energised, by their node-ID; protected as long as there is one.

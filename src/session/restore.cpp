@@ -5,6 +5,7 @@
 #include <set>
 
 #include "canopen/pdo.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/option_scope.hpp"
 #include "session/write.hpp"
 
@@ -28,21 +29,18 @@ class Run {
     const auto plan = planned(storage, options);
     touched_ = touched_by(plan, *present_);
     if (done) done = write(plan, out_.writes);
+    if (storage.worked_in_ram()) note_flash(sent_);
     if (done) done = check();
     if (done) done = check_restart();
     out_.all_written = done.has_value();
     if (!done) {
       out_.failure = done.error();
-      if (options.roll_back) go_back();
+      if (options.roll_back) take_back(storage);
     }
-    const auto kept = storage.close(!out_.failure, out_.writes);
+    // Nothing that was taken back is lost at power-off.
+    const auto kept = storage.close(!out_.failure, is_as_before() ? 0 : out_.writes);
     for (const auto& notice : storage.notices()) out_.notices.push_back(notice);
-    if (kept) {
-      out_.kept = *kept;
-    } else if (!out_.failure) {
-      out_.failure = kept.error();
-      look_again();
-    }
+    end(kept);
     return std::move(out_);
   }
 
@@ -79,10 +77,35 @@ class Run {
     return out;
   }
 
+  /// In the RAM and in the flash.
+  bool is_as_before() const { return out_.rolled_back && out_.in_flash.empty(); }
+
+  void end(const Result<Kept>& kept) {
+    if (!kept && out_.failure) {
+      out_.failure->message += "; " + kept.error().message;
+    } else if (!kept) {
+      out_.failure = kept.error();
+      look_again();
+    } else if (out_.failure && *kept == Kept::yes) {
+      // A switch keeps each value as it is written: some of these, then, unless all were taken back.
+      out_.kept = is_as_before() ? Kept::no : Kept::unknown;
+    } else {
+      out_.kept = *kept;
+    }
+  }
+
+  /// Communication objects and the controlword do not go through the switch of the memory.
+  void note_flash(const std::set<ObjectAddress>& objects) {
+    out_.in_flash.clear();
+    for (const auto object : objects)
+      if (object.index >= 0x2000 && object != objects::kControlword) out_.in_flash.push_back(object);
+  }
+
   Result<void> write(const std::vector<PlannedWrite>& plan, std::size_t& count) {
     for (const auto& step : plan) {
       const SdoRequest request{node_, step.object, step.data};
       const auto written = write_all(*session_, std::span(&request, 1), true).front();
+      if (write_end(written, step.object) != WriteEnd::not_written) sent_.insert(step.object);
       if (!written) return fail(written.error());
       ++count;
     }
@@ -128,14 +151,25 @@ class Run {
     out_.rolled_back = out_.astray.empty();
   }
 
+  /// To the memory that the drive worked with. Where its flash could not be left nothing is put back: what is
+  /// not as it was is named.
+  void take_back(StorageScope& storage) {
+    const bool of_ram = storage.worked_in_ram();
+    const auto left = storage.leave_flash();
+    const auto boots = session_->watch().boots(node_);
+    go_back(left.has_value());
+    // One that restarted meanwhile may work with its flash again.
+    if (of_ram && session_->watch().boots(node_) != boots) note_flash(touched_);
+  }
+
   /// Reads where things stand, puts back what is not as it was, and reads again. Deaf to Ctrl-C.
-  void go_back() {
+  void go_back(bool may_write) {
     const Deaf deaf(*session_);
     auto now = read_touched();
     for (const auto object : touched_)
       if (now.count(object) == 0) now.emplace(object, other_than(object, present_->at(object)));
     std::size_t ignored = 0;
-    if (!silent_) (void)write(plan_writes(profile_, now, *present_), ignored);
+    if (!silent_ && may_write) (void)write(plan_writes(profile_, now, *present_), ignored);
     now = silent_ ? Values{} : read_touched();
     for (const auto object : touched_) {
       const auto found = now.find(object);
@@ -181,8 +215,9 @@ class Run {
   const Values* present_;
   const Values* wanted_;
   std::set<ObjectAddress> touched_;
-  std::uint32_t boots_ = 0;  ///< Boot-ups heard before the first write.
-  bool silent_ = false;      ///< The node has stopped answering.
+  std::set<ObjectAddress> sent_;  ///< What was, or may have been, written.
+  std::uint32_t boots_ = 0;       ///< Boot-ups heard before the first write.
+  bool silent_ = false;           ///< The node has stopped answering.
   RestoreOutcome out_;
 };
 

@@ -10,8 +10,13 @@
 namespace servoctl::session {
 namespace {
 
-/// Whoever cancels by a simulated clock, which only waits move on, is asked so often.
+/// Whoever cancels by a simulated clock, which only waits move on, is asked so often; who looks on is told.
 constexpr Duration kCancelSlice = std::chrono::milliseconds(250);
+/// Frames that come faster than they are read end no queue: so long is it read, and the clock asked so often.
+constexpr Duration kListening = std::chrono::milliseconds(100);
+constexpr std::size_t kClockEvery = 64;
+/// So often who looks on is told that it goes on.
+constexpr Duration kTelling = std::chrono::milliseconds(100);
 
 }  // namespace
 
@@ -22,6 +27,9 @@ Session::Session(std::unique_ptr<Network> network, std::string url, Options opti
       options_(std::move(options)),
       energised_(options_.protection) {
   network_->set_cancelled([this] { return options_.cancelled && options_.cancelled(); });
+  if (options_.ordered)
+    network_->set_ordered(
+        [this](std::uint8_t node, std::string_view order) { options_.ordered(*this, node, order); });
 }
 
 Session::Session(std::unique_ptr<can::Bus> bus, std::string url, Options options)
@@ -54,7 +62,8 @@ Result<bool> Session::step(TimePoint deadline, const std::function<bool()>& conc
   if (interleave_ != nullptr && interleave_->in_job() && deadline > received_at_)
     return interleave_->park(deadline, concerns);
   // A stale time ends the wait too early at most, and saves asking the clock once an arrival.
-  return step_network(options_.cancelled ? std::min(deadline, received_at_ + kCancelSlice) : deadline);
+  const bool sliced = options_.cancelled || options_.waiting;
+  return step_network(sliced ? std::min(deadline, received_at_ + kCancelSlice) : deadline);
 }
 
 Result<bool> Session::step_network(TimePoint deadline) {
@@ -64,7 +73,13 @@ Result<bool> Session::step_network(TimePoint deadline) {
   auto stepped = network_->step(deadline);
   received_at_ = network_->stepped_at();
   if (interleave_ != nullptr && stepped && *stepped) interleave_->taken_in_ |= interleave_->in_job();
+  if (options_.waiting && received_at_ >= told_waiting_ + kTelling) tell_waiting();
   return stepped;
+}
+
+void Session::tell_waiting() {
+  told_waiting_ = received_at_;
+  options_.waiting(stretches_.empty() ? nullptr : stretches_.back(), received_at_);
 }
 
 Result<bool> Session::wait(const std::function<bool()>& done, TimePoint deadline) {
@@ -76,10 +91,11 @@ Result<bool> Session::wait(const std::function<bool()>& done, TimePoint deadline
 }
 
 Result<void> Session::listen() {
-  for (;;) {
+  const auto end = now() + kListening;
+  for (std::size_t taken = 1;; ++taken) {
     const auto stepped = step(now());
     if (!stepped) return fail(stepped.error());
-    if (!*stepped) return {};
+    if (!*stepped || (taken % kClockEvery == 0 && now() >= end)) return {};
   }
 }
 

@@ -16,6 +16,7 @@
 #include "base/result.hpp"
 #include "base/time.hpp"
 #include "canopen/transfer.hpp"
+#include "session/exchange.hpp"
 #include "session/known_identities.hpp"
 #include "session/network.hpp"
 #include "session/protection.hpp"
@@ -27,6 +28,7 @@ class Bus;
 namespace servoctl::session {
 
 class Interleave;
+class Stretch;
 
 /// One SDO transfer: a read, or a write when `data` is set.
 struct SdoRequest {
@@ -56,6 +58,13 @@ struct Options {
   std::function<void(std::size_t done, std::optional<std::size_t> total, TimePoint now)> progress;
   /// Called with the number of requests done in a long list, and the total; may be empty.
   std::function<void(std::size_t done, std::size_t total, TimePoint now)> list_progress;
+  /// Told in every wait, ten times a second at most, what takes its time, or null where nobody said; may be
+  /// empty.
+  std::function<void(const Stretch* stretch, TimePoint now)> waiting;
+  /// Told of every transfer that was tried, whatever carried it; may be empty.
+  std::function<void(const Exchange&)> exchanged;
+  /// As Network::set_ordered(), of this session; may be empty.
+  std::function<void(const Session&, std::uint8_t node, std::string_view order)> ordered;
 };
 
 /// A network with its nodes. One pump drives any number of transfers; who listens hears everything in every
@@ -118,6 +127,8 @@ class Session {
   GatewayNetwork* gateway() { return network_->gateway(); }
   const std::string& url() const { return url_; }
   Options& options() { return options_; }
+  /// What takes its time now, the innermost last; kept by Stretch itself.
+  std::vector<const Stretch*>& stretches() { return stretches_; }
 
   /// When listen() has something to do although nothing arrives from outside.
   TimePoint next_event() const { return network_->next_event(); }
@@ -131,6 +142,7 @@ class Session {
  private:
   friend class Interleave;
   Result<bool> step_network(TimePoint deadline);
+  void tell_waiting();
 
   std::unique_ptr<Network> network_;
   Interleave* interleave_ = nullptr;  ///< Whose jobs run on it now; null: none.
@@ -142,6 +154,8 @@ class Session {
   EnergisedNodes energised_;
   std::array<std::unique_ptr<ObjectChannel>, 128> channels_;  ///< Those nobody uses now.
   TimePoint received_at_{};
+  std::vector<const Stretch*> stretches_;
+  TimePoint told_waiting_{};
 };
 
 }  // namespace servoctl::session

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "canopen/sdo_abort.hpp"
+#include "session/identify.hpp"
 #include "session/no_register.hpp"
 
 namespace servoctl::session {
@@ -23,6 +24,17 @@ Result<void> take_answer(const Result<Bytes>& answer, SnapshotEntry& entry) {
   const auto code = answer.error().abort_code;
   entry.left_out = code ? fmt::format("refused: {}", canopen::sdo_abort_text(*code)) : answer.error().message;
   return {};
+}
+
+/// What is read of two drives of one number, now from the one and now from the other, is of neither.
+Result<void> of_one_drive(Session& session, std::uint8_t node) {
+  const std::uint8_t nodes[] = {node};
+  if (const auto settled = settle_duplicates(session, nodes, kBriefly); !settled) return settled;
+  auto single = refuse_duplicate(session, node);
+  if (single) return single;
+  single.error().message =
+      fmt::format("what was read may be of either of two drives: {}", single.error().message);
+  return single;
 }
 
 }  // namespace
@@ -59,6 +71,9 @@ std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Prof
       if (!taken && snapshot) snapshot = fail(taken.error());
       if (snapshot) snapshot->entries.push_back(std::move(entry));
     }
+    // Two drives answering at once also break transfers: that they are two is the cause to be told.
+    const auto single = of_one_drive(session, node);
+    if (!single && (snapshot || single.error().code == Errc::refused)) snapshot = fail(single.error());
     out.push_back(std::move(snapshot));
   }
   return out;

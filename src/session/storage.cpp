@@ -43,7 +43,25 @@ bool stores_all(const drive::Profile& profile) {
   return profile.rules.store.objects && profile.dictionary.find(objects::kStoreAll) != nullptr;
 }
 
+/// One refusal tells nothing of the other ways; the manual was asked, too.
+Result<void> with_manual(Result<void> done, const drive::Profile* profile, std::uint16_t index,
+                         std::string_view hint) {
+  constexpr std::uint32_t kNoObject = 0x06020000;
+  if (done || profile == nullptr || done.error().abort_code != kNoObject) return done;
+  const ObjectAddress count{index, 0};
+  const ObjectAddress all{index, 1};
+  if (profile->dictionary.find(count) == nullptr && profile->dictionary.find(all) == nullptr)
+    done.error().hint = hint;
+  return done;
+}
+
 bool by_objects(const drive::Profile* profile) { return profile == nullptr || profile->rules.store.objects; }
+
+/// Whether `param set` writes anything: where no parameter has an object, `write` does.
+bool writes_by_parameter(const drive::Profile& profile) {
+  return std::any_of(profile.parameters.begin(), profile.parameters.end(),
+                     [](const auto& parameter) { return parameter.object.has_value(); });
+}
 
 }  // namespace
 
@@ -68,15 +86,18 @@ Result<std::vector<SdoRequest>> store_writes(const drive::Profile* profile, std:
   if (!rules.store.empty()) return writes_of(*profile, node, rules.store);
   auto hint = rules.flash_switch.empty()
                   ? std::string("its manual describes no method; check whether values survive a power cycle")
-                  : fmt::format("values are kept only when written: `param set … --keep` switches {}",
-                                rules.flash_switch);
+                  : fmt::format("values are kept only when written: `{} … --keep` switches {}",
+                                writes_by_parameter(*profile) ? "param set" : "write", rules.flash_switch);
   return fail(
       drive_error(Errc::negative, node, "this family cannot store all values at once", std::move(hint)));
 }
 
 Result<void> store_parameters(Session& session, const drive::Profile* profile, std::uint8_t node,
                               ParameterGroup group) {
-  return carry_out(session, store_writes(profile, node, group));
+  return with_manual(
+      carry_out(session, store_writes(profile, node, group)), profile, objects::kStoreIndex,
+      "the manual lists no object that stores, and does not say how values are kept: `verify` a "
+      "backup after a power cycle");
 }
 
 Result<std::vector<SdoRequest>> restore_writes(const drive::Profile* profile, std::uint8_t node,
@@ -95,7 +116,9 @@ Result<std::vector<SdoRequest>> restore_writes(const drive::Profile* profile, st
 
 Result<void> restore_defaults(Session& session, const drive::Profile* profile, std::uint8_t node,
                               ParameterGroup group) {
-  return carry_out(session, restore_writes(profile, node, group));
+  return with_manual(
+      carry_out(session, restore_writes(profile, node, group)), profile, objects::kRestoreIndex,
+      "the manual lists no object for it: use the panel or the vendor's software, or `restore` a backup");
 }
 
 Result<void> StorageScope::set(const std::string& name, std::int64_t value, std::optional<Changed>& out) {
@@ -135,12 +158,48 @@ Result<void> StorageScope::choose_memory() {
   const auto& rules = profile_->rules.store;
   const auto& value = keep_ ? rules.to_flash : rules.to_ram;
   if (rules.flash_switch.empty() || !value) return {};
-  if (const auto done = set(rules.flash_switch, *value, memory_); !done) return done;
-  if (memory_ && !keep_ && rehearsal_ == nullptr)
+  if (const auto done = set(rules.flash_switch, *value, memory_); !done || !memory_ || rehearsal_ != nullptr)
+    return done;
+  // Where values go is not taken on trust.
+  const auto found = session_->upload(node_, memory_->object);
+  if (!found) return fail(found.error());
+  if (*found == memory_->now) return {};
+  const auto told =
+      keep_ ? fmt::format("it acknowledged {} = {}, and did not take it: values would go to its RAM",
+                          rules.flash_switch, *value)
+            : fmt::format("it acknowledged {} = {}, and did not take it: values would go to its flash",
+                          rules.flash_switch, *value);
+  return fail(
+      drive_error(Errc::negative, node_, memory_->object, told, "nothing was written; set it at the panel"));
+}
+
+Result<void> StorageScope::leave_flash() {
+  if (!worked_in_ram()) return {};
+  const Deaf deaf(*session_);
+  const auto written = session_->download(node_, memory_->object, memory_->before);
+  // An answer that is lost may belong to a write that was done.
+  const auto found = session_->upload(node_, memory_->object);
+  if (!found) return fail(found.error());
+  if (*found == memory_->before) {
+    memory_.reset();
+    return {};
+  }
+  if (!written) return written;
+  return fail(drive_error(Errc::negative, node_, memory_->object, "it did not go back to the RAM"));
+}
+
+/// What became of the switch between RAM and flash, once it is where it stays.
+void StorageScope::tell_memory(bool stays, std::size_t writes) {
+  if (keep_ || rehearsal_ != nullptr) return;
+  const auto& rules = profile_->rules.store;
+  if (stays)
     notices_.push_back(fmt::format(
         "node {}: {} is now {}: values go to RAM and are lost at power-off; --keep makes them permanent",
-        node_, rules.flash_switch, *value));
-  return {};
+        node_, rules.flash_switch, *rules.to_ram));
+  else if (writes > 0)
+    notices_.push_back(
+        fmt::format("node {}: what was written went to RAM and is lost at power-off; {} is as it was again",
+                    node_, rules.flash_switch));
 }
 
 Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
@@ -197,9 +256,12 @@ Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
          "a power cycle shows whether the drive keeps them by itself; `store` tries again");
   note(put_back(password_), "the password could not be withdrawn: the drive may still be unlocked", {});
   // A switch that chose the RAM stays there: the next trial wants it, and writing it back wears the flash.
-  if (keep_ || !all_written) note(put_back(memory_), "the RAM/flash switch could not be restored", {});
+  const bool chosen = memory_.has_value();
+  const auto back = keep_ || !all_written ? put_back(memory_) : Result<void>();
+  note(back, "the RAM/flash switch could not be restored", {});
+  if (chosen && back) tell_memory(all_written, writes);
   if (wrong) return fail(std::move(*wrong));
-  if (has_switch) return keep_ && all_written ? Kept::yes : Kept::no;
+  if (has_switch) return keep_ ? Kept::yes : Kept::no;
   return keep_ && all_written ? Kept::yes : Kept::unknown;
 }
 

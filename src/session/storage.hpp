@@ -65,12 +65,17 @@ class StorageScope {
   Result<void> open(bool keep, bool unlock, bool choose);
   /// After them. Stores only if `all_written`, and only if open() was asked to keep. `writes` is their
   /// number: where each wears the flash, it is told. The error says all that went wrong: values that are
-  /// written but not kept, a password or a switch that could not be put back.
+  /// written but not kept, a password or a switch that could not be put back. By a switch each value is kept
+  /// as it is written, whatever came of the others: `all_written` is of no matter then.
   Result<Kept> close(bool all_written, std::size_t writes);
 
   /// Whether the drive worked in its RAM before it was told to keep: what its flash holds may be older than
   /// what it answers, so a value that need not change must be written all the same.
   bool worked_in_ram() const { return keep_ && memory_.has_value(); }
+  /// Before the values of a drive that worked in its RAM are put back: they are trials, and none of them
+  /// belongs in the flash. Deaf to Ctrl-C. After an error the switch may still be at the flash; close() tries
+  /// again.
+  Result<void> leave_flash();
 
   /// What was done beside the writes, in words.
   const std::vector<std::string>& notices() const { return notices_; }
@@ -89,6 +94,7 @@ class StorageScope {
   Result<void> write(ObjectAddress object, const Bytes& data);
   Result<void> store_all();
   void tell_wear(std::size_t writes);
+  void tell_memory(bool stays, std::size_t writes);
 
   Session* session_;
   const drive::Profile* profile_;

@@ -104,10 +104,20 @@ void TransferRun::ask(Lane& channel, canopen::Transfer transfer) {
   const auto& request = requests_[channel.current];
   channel.told = 0;
   channel.asked = true;
+  const auto now = session_->now();
+  if (channel.tries == 0) channel.begun = now;
   if (request.data)
-    channel.objects->start_download(request.object, *request.data, session_->now(), transfer);
+    channel.objects->start_download(request.object, *request.data, now, transfer);
   else
-    channel.objects->start_upload(request.object, session_->now(), transfer, request.size);
+    channel.objects->start_upload(request.object, now, transfer, request.size);
+}
+
+/// What has become of the present request.
+void TransferRun::tell(const Lane& channel, TimePoint ended) const {
+  const auto& request = requests_[channel.current];
+  if (const auto& exchanged = session_->options().exchanged)
+    exchanged({*session_, request.node, request.object, request.data ? &*request.data : nullptr,
+               results_[channel.current], channel.begun, ended, channel.tries + 1});
 }
 
 void TransferRun::finish(Lane& channel, Result<Bytes> result) {
@@ -124,6 +134,7 @@ void TransferRun::finish(Lane& channel, Result<Bytes> result) {
     result.error().hint = session_->network().silence_hint(request.node);
   auto& place = results_[channel.current];
   place = std::move(result);
+  tell(channel, place ? session_->received_at() : session_->network().stepped_at());
   if (request.ended != nullptr) *request.ended = session_->network().stepped_at();
   --open_;
   const auto& options = session_->options();
@@ -153,7 +164,10 @@ void TransferRun::skip_rest(Lane& channel, const Error& reason, bool reads_too) 
 /// abort may be what was not sent. The channels begin anew.
 void TransferRun::fail_all(const Error& error) {
   for (auto& channel : channels_) {
-    if (channel.asked) results_[channel.current] = fail(error);
+    if (channel.asked) {
+      results_[channel.current] = fail(error);
+      tell(channel, session_->now());
+    }
     for (; channel.started < channel.requests.size(); ++channel.started)
       results_[channel.requests[channel.started]] = fail(error);
     channel.asked = false;

@@ -22,7 +22,8 @@ class TransferRun {
     std::vector<std::size_t> requests;  ///< In their order, of all nodes' requests.
     std::size_t started = 0;            ///< How many of them.
     std::size_t current = 0;
-    std::uint32_t tries = 0;
+    std::uint32_t tries = 0;                ///< That the present request has had before.
+    TimePoint begun{};                      ///< Of its first.
     bool asked = false;                     ///< The present request has no result yet.
     std::size_t told = 0;                   ///< Bytes of the present transfer that were told as progress.
     TimePoint deadline = TimePoint::min();  ///< Of `objects`, as it last was.
@@ -33,6 +34,7 @@ class TransferRun {
   void ask(Lane& channel, canopen::Transfer transfer);
   void start(Lane& channel);
   void finish(Lane& channel, Result<Bytes> result);
+  void tell(const Lane& channel, TimePoint ended) const;
   void skip_rest(Lane& channel, const Error& reason, bool reads_too);
   void fail_all(const Error& error);
   void tell_progress();

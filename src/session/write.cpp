@@ -38,9 +38,27 @@ Result<Written> after_lost_answer(const SdoRequest& request, const Error& lost, 
   return done;
 }
 
+/// Of this write, which may have been done.
+Error open_end(const SdoRequest& request, Error error) {
+  error.may_be_done = true;
+  if (!error.node) error.node = request.node;
+  if (!error.object) error.object = request.object;
+  return error;
+}
+
+Result<Written> after_transfer(const SdoRequest& request, const Result<Bytes>& answer) {
+  if (answer) return Written{};
+  const auto code = answer.error().code;
+  if (code != Errc::bus && code != Errc::interrupted) return fail(answer.error());
+  // It may have been under way; or it waited for its turn.
+  auto error = open_end(request, answer.error());
+  error.message += "; whether the value was written is not known";
+  return fail(std::move(error));
+}
+
 Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& found) {
   if (!found) {
-    auto error = found.error();
+    auto error = open_end(request, found.error());
     error.message = "written, but reading it back failed: " + error.message;
     return fail(std::move(error));
   }
@@ -59,6 +77,7 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
 WriteEnd write_end(const Result<Written>& written, ObjectAddress object) {
   if (written) return WriteEnd::written;
   if (answer_lost(written.error(), object)) return WriteEnd::unknown;
+  if (written.error().may_be_done) return WriteEnd::unknown;
   // The line was cut, or Ctrl-C came: it may have been under way.
   if (written.error().code == Errc::bus || written.error().code == Errc::interrupted)
     return WriteEnd::unknown;
@@ -83,10 +102,7 @@ std::vector<Result<Written>> write_all(Session& session, std::span<const SdoRequ
   std::vector<SdoRequest> questions;
   std::vector<std::size_t> asked;
   for (std::size_t i = 0; i < requests.size(); ++i) {
-    if (answers[i])
-      out.emplace_back(Written{});
-    else
-      out.emplace_back(fail(answers[i].error()));
+    out.push_back(after_transfer(requests[i], answers[i]));
     const bool lost = !answers[i] && answer_lost(answers[i].error(), requests[i].object);
     if (!lost && !(answers[i] && read_back)) continue;
     questions.push_back(

@@ -57,6 +57,27 @@ Result<void> hold_serial(const Identity& identity, const AddressWish& wish) {
       "nothing was written; `info` shows what it is"));
 }
 
+/// A bitrate that was written and waits for the next start would come with the new node-ID.
+Result<void> hold_bitrate(show::Desk& desk, const AddressChange& change, const AddressWish& wish) {
+  const auto& name = desk.profile->rules.nmt.bitrate;
+  if (!change.moves() || wish.bitrate || !wish.bus_bitrate || name.empty()) return {};
+  const auto target = drive::resolve(desk.profile, name);
+  if (!target) return fail(target.error());
+  const auto held = desk.session->upload(change.node, target->address);
+  if (!held) return held.error().code == Errc::sdo_abort ? Result<void>() : fail(held.error());
+  const auto next = drive::bitrate_of_code(*desk.profile, static_cast<std::int64_t>(load_le(*held)));
+  if (!next || *next == *wish.bus_bitrate) return {};
+  return fail(drive_error(
+      Errc::refused, change.node, target->address,
+      fmt::format(
+          "it starts at {} next, and its bus has {}: to move it is to start anew, and it would be gone",
+          drive::bitrate_text(*next), drive::bitrate_text(*wish.bus_bitrate)),
+      fmt::format(
+          "nothing was written; `address --bitrate {} -n {}` takes that back, and all go to the other one "
+          "with `address --bitrate {} -n all`",
+          *wish.bus_bitrate, change.node, *next)));
+}
+
 void add_restart(const AddressChange& change, report::Value& plan) {
   auto* table = std::get_if<report::Table>(&plan.data());
   if (table == nullptr || !change.restarts()) return;
@@ -91,6 +112,7 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
       wish.bitrate ? drive::bitrate_code(*desk.profile, *wish.bitrate) : Result<std::int64_t>(0);
   if (!code) return fail(code.error());
   AddressChange out;
+  out.profile = desk.profile;
   out.node = node;
   out.to = wish.node.value_or(node);
   out.restart = rules.address_after;
@@ -109,6 +131,7 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
     if (const auto done = add_write(desk, out, rules.bitrate, *code, false); !done) return fail(done.error());
     out.bitrate = wish.bitrate;
   }
+  if (const auto stays = hold_bitrate(desk, out, wish); !stays) return fail(stays.error());
   auto cob_ids = out.moves() ? read_own_cob_ids(desk, node) : Result<session::Values>(session::Values{});
   if (!cob_ids) return fail(cob_ids.error());
   out.cob_ids = std::move(*cob_ids);
@@ -140,7 +163,7 @@ Result<void> refuse_taken(session::Session& session, std::span<const std::uint8_
   if (!used) return fail(used.error());
   if (used->empty()) return {};
   const auto& [node, how] = *used->begin();
-  return fail(drive_error(Errc::refused, node, fmt::format("this node-ID is taken: it {}", how),
+  return fail(drive_error(Errc::refused, node, fmt::format("this node-ID is taken: {}", how),
                           "nothing was written; `scan` shows who is there"));
 }
 
@@ -157,10 +180,21 @@ std::string_view text_of(AddressEnd end) {
 }
 
 Result<report::Value> planned_address(show::Desk& desk, std::span<const AddressChange> changes, bool unlock) {
-  session::Rehearsal rehearsal;
-  for (const auto& change : changes)
+  report::Value out;
+  for (const auto& change : changes) {
+    const FamilyScope family(desk, change.profile);
+    session::Rehearsal rehearsal;
     if (const auto done = rehearse(desk, change, unlock, rehearsal); !done) return fail(done.error());
-  auto out = show::planned_messages(desk, rehearsal.messages());
+    auto part = show::planned_messages(desk, rehearsal.messages());
+    auto* table = std::get_if<report::Table>(&out.data());
+    const auto* more = std::get_if<report::Table>(&part.data());
+    if (table == nullptr || more == nullptr) {
+      out = std::move(part);
+      continue;
+    }
+    table->json_only = table->json_only && more->json_only;
+    table->rows.insert(table->rows.end(), more->rows.begin(), more->rows.end());
+  }
   for (const auto& change : changes) add_restart(change, out);
   return out;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "session/addressing.hpp"
@@ -18,6 +19,9 @@ namespace servoctl::settings {
 struct AddressWish {
   std::optional<std::uint8_t> node = {};      ///< 1 to 127.
   std::optional<std::uint32_t> bitrate = {};  ///< bit/s
+  /// What the bus has, where that is known: a drive that is restarted to move must not come up at another
+  /// one.
+  std::optional<std::uint32_t> bus_bitrate = {};
   std::optional<std::uint32_t> serial = {};  ///< 1018h:04 of the drive that is meant; another one is refused.
 };
 
@@ -27,6 +31,7 @@ struct AddressChange {
   std::uint8_t to = 0;                   ///< `node` where it stays.
   std::optional<std::uint32_t> bitrate;  ///< What it has from its next start on, where one was wished.
   session::Identity identity;
+  const drive::Profile* profile = nullptr;  ///< Of its family.
   std::vector<session::SdoRequest> writes;
   std::vector<Bytes> before;  ///< What the objects of `writes` hold now.
   session::Values cob_ids;    ///< Those of its PDOs and of its emergencies.
@@ -38,9 +43,24 @@ struct AddressChange {
   bool restarts() const { return !bitrate && restart != drive::NmtRules::Restart::power_cycle; }
 };
 
+/// While it lives the work at this desk is done by the data of this family.
+class FamilyScope {
+ public:
+  FamilyScope(show::Desk& desk, const drive::Profile* profile)
+      : desk_(&desk), before_(std::exchange(desk.profile, profile)) {}
+  FamilyScope(const FamilyScope&) = delete;
+  FamilyScope& operator=(const FamilyScope&) = delete;
+  ~FamilyScope() { desk_->profile = before_; }
+
+ private:
+  show::Desk* desk_;
+  const drive::Profile* before_;
+};
+
 /// Looks at a drive and finds what has to be written; only reads. Errc::usage where the family has no
 /// parameter of the node-ID or the bitrate, or no such value; Errc::refused for a drive with another serial
-/// number, one that is energised, and two of one number; else as Session::upload().
+/// number, one that is energised, two of one number, and one that would come up at another bitrate than that
+/// of its bus when it starts at its new node-ID; else as Session::upload().
 Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const AddressWish& wish);
 
 /// Errc::refused when the drive has power on its motor; else as Session::upload(). One that has no statusword

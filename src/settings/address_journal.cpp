@@ -22,8 +22,14 @@ Record address_body(const AddressJournal& journal) {
   for (const auto& step : journal.steps)
     steps.emplace_back(Record{{"row", step.row}, {"from", step.from}, {"to", step.to}});
   List drives;
-  for (const auto& drive : journal.drives)
-    drives.emplace_back(Record{{"node", drive.node}, {"identity", show::identity_record(drive)}});
+  for (std::size_t i = 0; i < journal.drives.size(); ++i) {
+    const auto& drive = journal.drives[i];
+    Record record{{"node", drive.node}, {"identity", show::identity_record(drive)}};
+    // A journal of before has none.
+    if (i < journal.families.size() && !journal.families[i].empty())
+      record.push_back({"family", journal.families[i]});
+    drives.emplace_back(std::move(record));
+  }
   return {{"servoctl_address_plan", kAddressJournalVersion},
           {"checksum", journal.checksum},
           {"done", journal.done},
@@ -89,8 +95,10 @@ Result<std::optional<AddressJournal>> read_address_journal(const std::filesystem
   out.checksum = fields.text("checksum", true);
   out.done = static_cast<std::size_t>(fields.number("done", true).value_or(0));
   out.begun = fields.flag("begun");
-  for (const auto& record : list_of(*document, "drives", fields))
+  for (const auto& record : list_of(*document, "drives", fields)) {
     out.drives.push_back(read_drive(record, fields));
+    out.families.push_back(show::FieldReader(record, "drives").text("family", false));
+  }
   for (const auto& record : list_of(*document, "steps", fields))
     out.steps.push_back(read_step(record, out.drives.size(), fields));
   if (out.done > out.steps.size()) fields.refuse("done");

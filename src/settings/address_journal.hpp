@@ -16,6 +16,7 @@ struct AddressJournal {
   std::vector<AddressStep> steps;         ///< All, in their order.
   std::size_t done = 0;                   ///< How many of them are.
   bool begun = false;                     ///< The next one may have been written.
+  std::vector<std::string> families;      ///< Of each row.
   std::vector<session::Identity> drives;  ///< What each row's drive said it is, before anything was written.
 };
 

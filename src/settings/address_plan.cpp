@@ -14,6 +14,7 @@ namespace {
 
 constexpr std::string_view kNode = "node";
 constexpr std::string_view kNew = "new";
+constexpr std::string_view kFamily = "family";
 constexpr std::string_view kSerial = "serial";
 constexpr std::string_view kBitrate = "bitrate";
 
@@ -23,9 +24,9 @@ class PlanReader {
 
   Result<std::vector<AddressRow>> read() {
     for (const auto& column : table_->columns)
-      if (column != kNode && column != kNew && column != kSerial && column != kBitrate)
+      if (column != kNode && column != kNew && column != kFamily && column != kSerial && column != kBitrate)
         return fail(file_error(file_, 1, fmt::format("unknown column '{}'", column),
-                               "a plan has the columns node,new and, where wanted, serial,bitrate"));
+                               "a plan has the columns node,new and, where wanted, family,serial,bitrate"));
     if (!has(kNode) || !has(kNew))
       return fail(file_error(file_, 1, "the columns node and new are needed", "node,new"));
     std::vector<AddressRow> out;
@@ -57,6 +58,7 @@ class PlanReader {
                                "node-IDs are 1 to 127"));
       *place = static_cast<std::uint8_t>(*node);
     }
+    out.family = cell(row, kFamily);
     if (const auto text = cell(row, kSerial); !text.empty()) {
       const auto number = parse_integer(text);
       const auto serial = number ? number->as_unsigned() : std::nullopt;
@@ -76,11 +78,16 @@ class PlanReader {
   Result<void> each_once(std::span<const AddressRow> rows) const {
     std::set<std::uint8_t> from;
     std::set<std::uint8_t> to;
+    std::optional<std::uint32_t> bitrate;
     for (const auto& row : rows) {
       if (!from.insert(row.node).second)
         return fail(file_error(file_, row.line, fmt::format("node {} stands twice", row.node)));
       if (!to.insert(row.to).second)
         return fail(file_error(file_, row.line, fmt::format("two drives are to be node {}", row.to)));
+      if (!bitrate) bitrate = row.bitrate;
+      if (row.bitrate && row.bitrate != bitrate)
+        return fail(file_error(file_, row.line, "the drives of a bus have one bitrate, and the plan has two",
+                               "the same bitrate in each row that has one"));
     }
     return {};
   }
@@ -166,6 +173,26 @@ Result<std::vector<AddressRow>> parse_address_plan(std::string_view csv, std::st
 Result<std::vector<AddressStep>> order_address_steps(std::span<const AddressRow> rows,
                                                      const std::set<std::uint8_t>& taken) {
   return Renumbering(rows, taken).order();
+}
+
+std::optional<std::uint32_t> bitrate_of(std::span<const AddressRow> rows) {
+  const auto row = std::ranges::find_if(rows, [](const AddressRow& one) { return one.bitrate.has_value(); });
+  return row == rows.end() ? std::nullopt : row->bitrate;
+}
+
+std::string question_address_plan(std::span<const AddressRow> rows, std::size_t steps) {
+  const auto bitrate = bitrate_of(rows);
+  if (!bitrate)
+    return fmt::format("Re-address {} drives in {} steps? Each one is restarted.", rows.size(), steps);
+  const auto speed = drive::bitrate_text(*bitrate);
+  const auto changed =
+      std::ranges::count_if(rows, [](const AddressRow& one) { return one.bitrate.has_value(); });
+  return steps == 0
+             ? fmt::format("Write a bitrate of {} to {} drives, for their next start?", speed, changed)
+             : fmt::format(
+                   "Re-address {} drives in {} steps, each restarted, and then write a bitrate of {} to {} of "
+                   "them, for their next start?",
+                   rows.size(), steps, speed, changed);
 }
 
 }  // namespace servoctl::settings

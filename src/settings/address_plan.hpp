@@ -18,13 +18,21 @@ struct AddressRow {
   std::uint8_t to = 0;
   std::optional<std::uint32_t> serial;   ///< 1018h:04 of the drive that is meant.
   std::optional<std::uint32_t> bitrate;  ///< bit/s
+  std::string family;                    ///< Empty: that of the line, or of the cabinet.
   std::uint32_t line = 0;                ///< Of the file, from 1.
 };
 
-/// Reads a plan: CSV with the columns `node` and `new`, and `serial` and `bitrate` where they are wanted.
+/// Reads a plan: CSV with the columns `node` and `new`, and `family`, `serial` and `bitrate` where they are
+/// wanted.
 /// Errc::file with its line for another column, a number that is no node-ID, and a node that stands twice in
-/// one of the two columns.
+/// one of the two columns, and for two bitrates.
 Result<std::vector<AddressRow>> parse_address_plan(std::string_view csv, std::string_view file);
+
+/// The bitrate that drives of a plan are to have from their next start on; empty where it has none.
+std::optional<std::uint32_t> bitrate_of(std::span<const AddressRow> rows);
+
+/// What a plan is about to do, with so many steps left.
+std::string question_address_plan(std::span<const AddressRow> rows, std::size_t steps);
 
 /// One drive moves.
 struct AddressStep {

@@ -7,19 +7,16 @@
 #include "base/file_lock.hpp"
 #include "canopen/node_list.hpp"
 #include "drive/bitrate.hpp"
-#include "session/identify.hpp"
-#include "session/scan.hpp"
-#include "settings/address_journal.hpp"
+#include "settings/address_resume.hpp"
+#include "settings/address_table.hpp"
 #include "show/identity.hpp"
 
 namespace servoctl::settings {
 namespace {
 
-namespace fs = std::filesystem;
 using report::Show;
 using report::Table;
 using report::Value;
-using session::Identity;
 
 /// What came of one drive.
 struct RowEnd {
@@ -29,7 +26,8 @@ struct RowEnd {
 
 class PlanRun {
  public:
-  PlanRun(show::Desk& desk, std::string_view text, const fs::path& file, const AddressPlanOptions& options)
+  PlanRun(show::Desk& desk, std::string_view text, const std::filesystem::path& file,
+          const AddressPlanOptions& options)
       : desk_(&desk),
         session_(desk.session),
         text_(text),
@@ -48,6 +46,7 @@ class PlanRun {
     if (!desk_->dry_run && !*lock)
       return fail(Errc::refused, fmt::format("another servoctl is carrying out {}", file_.string()),
                   "wait until it ends, or find it with `ps`");
+    if (const auto named = name_families(); !named) return fail(named.error());
     if (const auto known = take_up(); !known) return fail(known.error());
     if (const auto looked = look(); !looked) return fail(looked.error());
     if (desk_->dry_run) return frames();
@@ -58,6 +57,27 @@ class PlanRun {
   }
 
  private:
+  Result<void> name_families() {
+    for (const auto& row : rows_) {
+      const auto profile =
+          options_->family_of ? options_->family_of(row) : Result<const drive::Profile*>(desk_->profile);
+      if (!profile) return fail(with_row(row, profile.error()));
+      profiles_.push_back(*profile);
+    }
+    return {};
+  }
+
+  Result<AddressChange> plan_row(std::size_t row, std::uint8_t node, const AddressWish& wish) {
+    const FamilyScope family(*desk_, profiles_[row]);
+    return plan_address(*desk_, node, wish);
+  }
+
+  /// Whether what stands at its place now is a drive of its family.
+  Result<void> hold(std::size_t row, std::uint8_t node) const {
+    const auto held = options_->hold ? options_->hold(node, *profiles_[row]) : Result<void>();
+    return held ? Result<void>() : fail(with_row(rows_[row], held.error()));
+  }
+
   Result<void> take_up() {
     const auto found = read_address_journal(path_);
     if (!found) return fail(found.error());
@@ -73,11 +93,25 @@ class PlanRun {
       return fail(Errc::refused, fmt::format("{} has changed since it was interrupted", file_.string()),
                   "resuming needs the plan as it was");
     journal_ = **found;
+    return same_families();
+  }
+
+  Result<void> same_families() const {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto& begun = journal_.families[i];
+      if (begun.empty() || begun == profiles_[i]->family) continue;
+      auto error = make_error(Errc::refused,
+                              fmt::format("it was begun as a {}, not as a {}", begun, profiles_[i]->family),
+                              "resuming needs the families as they were");
+      return fail(with_row(rows_[i], std::move(error)));
+    }
     return {};
   }
 
   Result<void> look() {
-    if (options_->resume) return settle();
+    if (options_->resume) return look_again();
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (const auto held = hold(i, rows_[i].node); !held) return held;
     const auto used = session::nodes_in_use(*session_, canopen::every_node_id());
     if (!used) return fail(used.error());
     std::set<std::uint8_t> taken;
@@ -85,49 +119,31 @@ class PlanRun {
     auto steps = order_address_steps(rows_, taken);
     if (!steps) return fail(steps.error());
     journal_.steps = std::move(*steps);
-    for (const auto& row : rows_) {
-      auto change = plan_address(*desk_, row.node, {.node = row.to, .serial = row.serial});
-      if (!change) return fail(with_row(row, change.error()));
-      if (!row.bitrate) {
-        // It keeps the one it has.
-      } else if (const auto fits = plan_address(*desk_, row.node, {.bitrate = row.bitrate}); !fits) {
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (const auto looked = look_at(i); !looked) return looked;
+    return {};
+  }
+
+  Result<void> look_again() {
+    if (const auto settled = settle_address_step(*session_, journal_); !settled) return settled;
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (rows_[i].bitrate || has_steps_left(journal_, i))
+        if (const auto held = hold(i, place_of_row(rows_[i], journal_, i)); !held) return held;
+    return {};
+  }
+
+  Result<void> look_at(std::size_t i) {
+    const auto& row = rows_[i];
+    auto change =
+        plan_row(i, row.node, {.node = row.to, .bus_bitrate = options_->bus_bitrate, .serial = row.serial});
+    if (!change) return fail(with_row(row, change.error()));
+    if (row.bitrate)
+      if (const auto fits = plan_row(i, row.node, {.bitrate = row.bitrate}); !fits)
         return fail(with_row(row, fits.error()));
-      }
-      journal_.drives.push_back(change->identity);
-      changes_.push_back(std::move(*change));
-    }
+    journal_.drives.push_back(change->identity);
+    journal_.families.push_back(profiles_[i]->family);
+    changes_.push_back(std::move(*change));
     return {};
-  }
-
-  /// Whether the step that was under way was done: the drive is at one of its two ends.
-  Result<void> settle() {
-    if (!journal_.begun || journal_.done >= journal_.steps.size()) return {};
-    const auto& step = journal_.steps[journal_.done];
-    const std::uint8_t both[] = {step.from, step.to};
-    const auto found = session::scan(*session_, both);
-    if (!found) return fail(found.error());
-    const auto is_at = [&](std::uint8_t node) {
-      return std::any_of(found->begin(), found->end(), [&](const Identity& identity) {
-        return identity.node == node && show::change_of(journal_.drives[step.row], identity).empty();
-      });
-    };
-    if (is_at(step.from) && is_at(step.to))
-      return fail(drive_error(Errc::refused, step.from,
-                              fmt::format("it was on its way to node {}, and both answer now", step.to),
-                              "`scan --long` shows both; make sure that only one of them is there"));
-    if (!is_at(step.from) && !is_at(step.to))
-      return fail(drive_error(Errc::timeout, step.from,
-                              fmt::format("it was on its way to node {}, and is at neither", step.to),
-                              "switch it off and on, and resume again"));
-    if (is_at(step.to)) ++journal_.done;
-    journal_.begun = false;
-    return {};
-  }
-
-  static Error with_row(const AddressRow& row, Error error) {
-    if (!error.node) error.node = row.node;
-    error.message = fmt::format("line {}: {}", row.line, error.message);
-    return error;
   }
 
   bool nothing_to_do() {
@@ -138,21 +154,7 @@ class PlanRun {
     return true;
   }
 
-  bool has_bitrates() const {
-    return std::any_of(rows_.begin(), rows_.end(),
-                       [](const AddressRow& row) { return row.bitrate.has_value(); });
-  }
-
-  Table step_table() const {
-    Table table;
-    table.columns = {{"step"}, {"node"}, {"new_node", "new"}, {"remark"}};
-    for (std::size_t i = journal_.done; i < journal_.steps.size(); ++i) {
-      const auto& step = journal_.steps[i];
-      const bool aside = step.to != rows_[step.row].to;
-      table.rows.push_back({i + 1, step.from, step.to, aside ? Value("steps aside for a while") : Value()});
-    }
-    return table;
-  }
+  bool has_bitrates() const { return bitrate_of(rows_).has_value(); }
 
   Result<Value> frames() {
     std::vector<AddressChange> sent;
@@ -167,24 +169,25 @@ class PlanRun {
         desk_->notices.push_back(
             fmt::format("node {}: it steps aside to a free node-ID first, see the steps", rows_[i].node));
     }
-    desk_->tell_value(Value(step_table()));
+    desk_->tell_value(Value(address_steps(rows_, journal_)));
     return planned_address(*desk_, sent, options_->each.unlock);
   }
 
   Result<void> ask() const {
-    desk_->tell_value(Value(step_table()));
-    return desk_->confirm(fmt::format("Re-address {} drives in {} steps? Each one is restarted.",
-                                      rows_.size(), journal_.steps.size() - journal_.done));
+    desk_->tell_value(Value(address_steps(rows_, journal_)));
+    return desk_->confirm(question_address_plan(rows_, journal_.steps.size() - journal_.done));
   }
 
   Result<void> carry_out() {
     if (const auto noted = write_address_journal(path_, journal_); !noted) return noted;
-    const bool moved = move_all();
-    const bool all = moved && set_bitrates();
+    const bool all = move_all() && set_bitrates();
+    if (options_->moved)
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+        if (rows_[i].node != rows_[i].to && place_of_row(rows_[i], journal_, i) == rows_[i].to)
+          options_->moved(rows_[i], ends_[i].serial);
     std::error_code ignored;
-    const bool untouched = journal_.done == 0 && !journal_.begun;
-    if (all || untouched)
-      fs::remove(path_, ignored);
+    if (all || (journal_.done == 0 && !journal_.begun && !has_written_bitrate_))
+      std::filesystem::remove(path_, ignored);
     else
       desk_->notices.push_back("the plan is not finished: --resume continues once the cause is removed");
     return {};
@@ -201,7 +204,7 @@ class PlanRun {
     const auto step = journal_.steps[journal_.done];
     const auto row = rows_[step.row];
     const std::uint8_t to[] = {step.to};
-    auto change = plan_address(*desk_, step.from, {.node = step.to});
+    auto change = plan_row(step.row, step.from, {.node = step.to, .bus_bitrate = options_->bus_bitrate});
     if (change && !show::change_of(journal_.drives[step.row], change->identity).empty())
       change =
           fail(drive_error(Errc::refused, step.from, "another drive is there than when the plan was made",
@@ -215,20 +218,13 @@ class PlanRun {
     const auto outcome = change_address(*desk_, *change, options_->each);
     note(step.row, text_of(outcome.end));
     if (outcome.end == AddressEnd::as_before) journal_.begun = false;
-    if (outcome.end != AddressEnd::moved) return stop(step.row, outcome.error.value_or(waits(step)));
+    if (outcome.end != AddressEnd::moved) return stop(step.row, outcome.error.value_or(awaits_power(step)));
     if (outcome.error) desk_->errors.push_back(with_row(row, *outcome.error));
     journal_.begun = false;
     ++journal_.done;
     if (const auto noted = write_address_journal(path_, journal_); !noted)
       return stop(step.row, noted.error());
     return true;
-  }
-
-  static Error waits(const AddressStep& step) {
-    return drive_error(
-        Errc::negative, step.from,
-        fmt::format("it is to be switched off and on before the next one moves: then it is node {}", step.to),
-        "switch it off and on, then add --resume; --wait 5min waits for it");
   }
 
   bool stop(std::size_t row, Error error) {
@@ -240,27 +236,29 @@ class PlanRun {
 
   /// Drives that stay where they are, with another bitrate at their next start.
   bool set_bitrates() {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
+    bool all = true;
+    for (std::size_t i = 0; all && i < rows_.size(); ++i) {
       if (!rows_[i].bitrate) {
         if (ends_[i].result == "not reached") note(i, text_of(AddressEnd::nothing_to_do));
         continue;
       }
-      const auto change = plan_address(*desk_, rows_[i].to, {.bitrate = rows_[i].bitrate});
-      if (!change) return stop(i, change.error());
-      const auto outcome = change_address(*desk_, *change, options_->each);
-      if (outcome.error) return stop(i, *outcome.error);
+      const auto change = plan_row(i, rows_[i].to, {.bitrate = rows_[i].bitrate});
+      AddressOutcome outcome;
+      if (change)
+        outcome = change_address(*desk_, *change, options_->each);
+      else
+        outcome.error = change.error();
+      all = !outcome.error || stop(i, *outcome.error);
+      if (!all) continue;
+      has_written_bitrate_ = true;
       note(i, outcome.end == AddressEnd::nothing_to_do
                   ? ends_[i].result
                   : fmt::format("{} from the next start", drive::bitrate_text(*rows_[i].bitrate)));
     }
-    tell_bitrate();
-    return true;
-  }
-
-  void tell_bitrate() {
-    if (!has_bitrates()) return;
-    const auto row = std::find_if(rows_.begin(), rows_.end(), [](const AddressRow& r) { return r.bitrate; });
-    for (const auto& line : bitrate_steps(session_->url(), *row->bitrate)) desk_->notices.push_back(line);
+    if (has_written_bitrate_)
+      for (const auto& line : bitrate_steps(session_->url(), *bitrate_of(rows_)))
+        desk_->notices.push_back(line);
+    return all;
   }
 
   void note(std::size_t row, std::string_view result) {
@@ -270,29 +268,31 @@ class PlanRun {
 
   Value answer() const {
     Table table;
-    table.columns = {{"node"}, {"new_node", "new"}, {"serial", "", Show::json}, {"result"}};
+    table.columns = {{"node"}, {"new_node", "new"}, {"family"}, {"serial", "", Show::json}, {"result"}};
     for (std::size_t i = 0; i < rows_.size(); ++i)
-      table.rows.push_back(
-          {rows_[i].node, rows_[i].to, ends_[i].serial ? Value(*ends_[i].serial) : Value(), ends_[i].result});
+      table.rows.push_back({rows_[i].node, rows_[i].to, profiles_[i]->family,
+                            ends_[i].serial ? Value(*ends_[i].serial) : Value(), ends_[i].result});
     return Value(std::move(table));
   }
 
   show::Desk* desk_;
   session::Session* session_;
   std::string text_;
-  fs::path file_;
-  fs::path path_;
+  std::filesystem::path file_;
+  std::filesystem::path path_;
   const AddressPlanOptions* options_;
   std::vector<AddressRow> rows_;
+  std::vector<const drive::Profile*> profiles_;  ///< Of each row.
   std::vector<AddressChange> changes_;
   std::vector<RowEnd> ends_;
+  bool has_written_bitrate_ = false;
   AddressJournal journal_;
 };
 
 }  // namespace
 
-Result<report::Value> run_address_plan(show::Desk& desk, std::string_view text, const fs::path& file,
-                                       const AddressPlanOptions& options) {
+Result<report::Value> run_address_plan(show::Desk& desk, std::string_view text,
+                                       const std::filesystem::path& file, const AddressPlanOptions& options) {
   return PlanRun(desk, text, file, options).run();
 }
 

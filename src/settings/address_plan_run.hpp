@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string_view>
 
@@ -11,6 +12,13 @@ namespace servoctl::settings {
 
 struct AddressPlanOptions {
   AddressOptions each;
+  std::optional<std::uint32_t> bus_bitrate = {};  ///< As that of an AddressWish.
+  /// The data of a row's family, and whether the drive at a node is one of it; null: that of the desk,
+  /// unheld.
+  std::function<Result<const drive::Profile*>(const AddressRow& row)> family_of = {};
+  std::function<Result<void>(std::uint8_t node, const drive::Profile& family)> hold = {};
+  /// Called at the end for each drive that has its new node-ID; null: nobody wants to know.
+  std::function<void(const AddressRow& row, std::optional<std::uint32_t> serial)> moved = {};
   bool resume = false;  ///< Goes on with what the journal tells of.
 };
 
@@ -19,8 +27,9 @@ struct AddressPlanOptions {
 /// that do not restart any more. Ends with the first that fails; the journal beside the file stays then, and
 /// `resume` goes on after it was put right. `text` is what stands in the file.
 ///
-/// The answer has a row for each drive: `node new_node serial result`; with dry_run the frames. Errc::refused
-/// where a journal stands and is not to be gone on with, where a new node-ID is taken, and as plan_address().
+/// The answer has a row for each drive: `node new_node family serial result`; with dry_run the frames.
+/// Errc::refused where a journal stands and is not to be gone on with, where a new node-ID is taken, where a
+/// row has another family than when it was begun, and as plan_address().
 Result<report::Value> run_address_plan(show::Desk& desk, std::string_view text,
                                        const std::filesystem::path& file, const AddressPlanOptions& options);
 

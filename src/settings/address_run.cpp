@@ -9,6 +9,7 @@
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
 #include "session/scan.hpp"
+#include "session/stretch.hpp"
 #include "session/write.hpp"
 #include "settings/address_change.hpp"
 #include "settings/own_cob_ids.hpp"
@@ -72,7 +73,9 @@ class AddressRun {
         std::count_if(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
     const auto kept = storage.close(all, static_cast<std::size_t>(done));
     for (const auto& notice : storage.notices()) desk_->notices.push_back(notice);
-    if (!all) return not_written(wrong->error(), back);
+    if (!all)
+      return not_written(wrong->error(),
+                         change_->writes[static_cast<std::size_t>(wrong - written.begin())].object, back);
     if (!kept) return not_kept(kept.error());
     out_.kept = *kept;
     return true;
@@ -90,25 +93,39 @@ class AddressRun {
     return out;
   }
 
-  bool not_written(Error error, const Result<void>& back) {
+  bool not_written(Error error, ObjectAddress object, const Result<void>& back) {
     const auto& store = desk_->profile->rules.store;
     if (error.code == Errc::sdo_abort && !store.unlock.empty() && !options_->unlock)
       error.hint = fmt::format("it may be locked by {}: add --unlock", store.unlock);
     if (back) return fail_with(AddressEnd::as_before, std::move(error));
     error.message += "; what it holds now is not known: " + back.error().message;
-    error.hint = fmt::format("before it is switched off: `read {} -n {}`, its node-ID for the next start",
-                             desk_->profile->rules.nmt.node_id, change_->node);
+    error.hint = fmt::format("before it is switched off: `read {} -n {}`, which holds from its next start on",
+                             to_string(object), change_->node);
     return fail_with(AddressEnd::failed, std::move(error));
+  }
+
+  bool store_again() {
+    session::StorageScope storage(*session_, desk_->profile, change_->node);
+    return storage.open(true, options_->unlock, true) && storage.close(true, 0);
   }
 
   /// An address that is written and not kept would come and go with the power.
   bool not_kept(Error error) {
     const std::vector<Result<session::Written>> written(change_->writes.size(), session::Written{});
     const auto back = put_back(written);
+    // It may have stored all the same, and only its answer was lost.
+    const bool may_hold = error.code != Errc::sdo_abort;
     error.message = "the address was written and could not be kept: " + error.message;
-    if (back) {
+    if (back && (!may_hold || store_again())) {
       error.message += "; the old one was written back";
       return fail_with(AddressEnd::as_before, std::move(error));
+    }
+    if (back) {
+      error.message +=
+          "; the old one was written back, and could not be stored either: which of them it has after "
+          "power-off is not known";
+      error.hint = fmt::format("`store -n {}` before it is switched off stores the old one", change_->node);
+      return fail_with(AddressEnd::failed, std::move(error));
     }
     error.message += "; and writing the old one back failed: " + back.error().message;
     return fail_with(AddressEnd::failed, std::move(error));
@@ -127,6 +144,7 @@ class AddressRun {
     }
     if (change_->moves()) session::forget_node(*session_, change_->to);
     const auto patience = change_->restarts() ? kBootPatience : options_->patience;
+    const session::Stretch stretch(*session_, session_->now() + patience, session::Stretch::End::at_latest);
     const auto came =
         session::wait_for_boot(*session_, change_->node, change_->to, session_->now() + patience);
     if (came)
@@ -171,13 +189,16 @@ class AddressRun {
     };
     const auto here = at(change_->to);
     const bool old = change_->moves() && at(change_->node) != found->end();
-    if (here == found->end())
-      not_there(old);
-    else if (!show::change_of(change_->identity, *here).empty())
+    if (here == found->end()) return not_there(old);
+    // What it did not answer in the search is no difference.
+    const auto identity = session::read_identity(*session_, change_->to);
+    if (!identity)
+      fail_with(AddressEnd::failed, written_but(identity.error()));
+    else if (!show::change_of(change_->identity, *identity).empty())
       fail_with(AddressEnd::failed,
                 about(Errc::refused,
                       fmt::format("node {} answers now, but is another drive: {}, and {} before", change_->to,
-                                  serial_text(*here), serial_text(change_->identity)),
+                                  serial_text(*identity), serial_text(change_->identity)),
                       "`scan --long` shows who is there"));
     else if (old)
       fail_with(
@@ -257,10 +278,12 @@ class AddressRun {
 }  // namespace
 
 AddressOutcome change_address(show::Desk& desk, const AddressChange& change, const AddressOptions& options) {
+  const FamilyScope family(desk, change.profile);
   return AddressRun(desk, change, options).run();
 }
 
 AddressOutcome find_again(show::Desk& desk, const AddressChange& change, AddressOutcome so_far) {
+  const FamilyScope family(desk, change.profile);
   const AddressOptions none;
   return AddressRun(desk, change, none).find_from(std::move(so_far));
 }

@@ -47,4 +47,15 @@ report::Table address_table(std::span<const AddressChange> changes,
   return table;
 }
 
+report::Table address_steps(std::span<const AddressRow> rows, const AddressJournal& journal) {
+  report::Table table;
+  table.columns = {{"step"}, {"node"}, {"new_node", "new"}, {"remark"}};
+  for (std::size_t i = journal.done; i < journal.steps.size(); ++i) {
+    const auto& step = journal.steps[i];
+    const bool aside = step.to != rows[step.row].to;
+    table.rows.push_back({i + 1, step.from, step.to, aside ? Value("steps aside for a while") : Value()});
+  }
+  return table;
+}
+
 }  // namespace servoctl::settings

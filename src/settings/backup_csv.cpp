@@ -29,7 +29,7 @@ Cells cells_of(const drive::Meaning& meaning, od::DataType type, const Bytes& by
   if (text || (meaning.scale == 1 && meaning.encoding == od::Encoding::plain))
     return {od::to_string(*value), std::string(text ? "" : meaning.unit)};
   if (meaning.unit.empty() && meaning.encoding == od::Encoding::plain) return {od::to_string(*value), {}};
-  return {fmt::format("{:.12g}", drive::scaled(meaning, *value)), std::string(meaning.unit)};
+  return {plain_number(drive::scaled(meaning, *value), 12), std::string(meaning.unit)};
 }
 
 std::string row_text(const drive::Profile& profile, const Backup& backup, const Backup::Entry& entry) {

@@ -224,6 +224,25 @@ Result<BackupSource> open_backup(const std::filesystem::path& file, LineReader* 
                       lines};
 }
 
+bool is_backup(const std::filesystem::path& file, LineReader* lines) {
+  const auto source = open_backup(file, lines);
+  if (!source) return false;
+  const std::string_view text = source->text;
+  if (trim(text).empty()) return true;
+  const auto line = first_line(text);
+  switch (source->format) {
+    case BackupFormat::json: {
+      const auto document = report::parse_json(text, source->file);
+      return document && report::find(*document, "servoctl_backup") != nullptr;
+    }
+    case BackupFormat::dcf: return begins_section(line);
+    case BackupFormat::csv: return is_table_head(line);
+    case BackupFormat::batch: return lines != nullptr && lines->setting_lines(text, source->file).has_value();
+    case BackupFormat::concise_dcf: break;
+  }
+  return false;
+}
+
 std::string family_of(const BackupSource& source) {
   if (source.format == BackupFormat::json) {
     const auto document = report::parse_json(source.text, source.file);

@@ -83,6 +83,10 @@ struct BackupSource {
 /// Reads the file and recognises its format by its content. Errc::file.
 Result<BackupSource> open_backup(const std::filesystem::path& file, LineReader* lines);
 
+/// Whether the file is a backup in one of the formats, or empty: nothing else is lost where it is replaced. A
+/// concise DCF, which nobody writes here, is none.
+bool is_backup(const std::filesystem::path& file, LineReader* lines);
+
 /// The family the file names; empty when it names none.
 std::string family_of(const BackupSource& source);
 

@@ -19,22 +19,22 @@ using report::Value;
 constexpr std::int64_t kBackupVersion = 1;
 
 Record entry_record(const drive::Profile* profile, const Backup& backup, const Backup::Entry& entry) {
-  Record out{{"id", report::text_or_null(entry.id)},
-             {"index", entry.object.index},
-             {"sub", entry.object.sub},
-             {"name", report::text_or_null(entry.name)},
-             {"type", od::name(entry.type)},
-             {"bytes", entry.bytes ? Value(to_hex(*entry.bytes)) : Value()}};
+  show::DecodedValue decoded;
   if (entry.bytes) {
     const show::Reading reading{backup.identity.node, drive::target_at(profile, entry.object), entry.type,
                                 *entry.bytes};
-    const auto decoded = show::decode_value(reading, *entry.bytes);
-    out.push_back({"value", decoded.value});
-    out.push_back({"unit", report::text_or_null(decoded.unit)});
-    out.push_back({"label", decoded.label});
+    decoded = show::decode_value(reading, *entry.bytes);
   }
-  if (!entry.left_out.empty()) out.push_back({"left_out", entry.left_out});
-  return out;
+  return {{"id", report::text_or_null(entry.id)},
+          {"index", entry.object.index},
+          {"sub", entry.object.sub},
+          {"name", report::text_or_null(entry.name)},
+          {"type", od::name(entry.type)},
+          {"bytes", entry.bytes ? Value(to_hex(*entry.bytes)) : Value()},
+          {"value", decoded.value},
+          {"unit", report::text_or_null(decoded.unit)},
+          {"label", decoded.label},
+          {"left_out", report::text_or_null(entry.left_out)}};
 }
 
 session::Identity read_identity(const Value& record, std::uint8_t node, show::FieldReader& header) {

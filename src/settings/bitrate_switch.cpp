@@ -7,6 +7,7 @@
 #include "base/duration.hpp"
 #include "drive/bitrate.hpp"
 #include "session/scan.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -20,17 +21,9 @@ constexpr Duration kCommandLeaves = std::chrono::milliseconds(20);
 /// From an NMT reset to the boot-up message.
 constexpr Duration kBooting = std::chrono::seconds(10);
 constexpr Duration kLookAgain = std::chrono::seconds(2);
-/// So long may an adapter take to come up.
-constexpr Duration kInterfaceComesUp = std::chrono::seconds(2);
 
 bool restarts_over_bus(const AddressChange& change) {
   return change.restart != drive::NmtRules::Restart::power_cycle;
-}
-
-std::string left_behind_text(const BitrateSwitch& plan, std::span<const std::uint8_t> others) {
-  return fmt::format("node{} {} would be left at {}; -n all names all that answer",
-                     others.size() == 1 ? "" : "s", fmt::join(others, ", "),
-                     plan.before.bitrate ? bitrate_text(*plan.before.bitrate) : "the old bitrate");
 }
 
 /// All drives and the interface, between two bitrates.
@@ -62,12 +55,14 @@ class SwitchRun {
  private:
   Result<void> move() {
     deadline_ = session_->now() + (over_bus_ ? kBooting : options_->patience);
+    const session::Stretch stretch(*session_, deadline_, session::Stretch::End::at_latest);
     if (const auto gone = over_bus_ ? reset_all() : wait_until_off(); !gone) return gone;
     for (const auto node : before_) session::forget_node(*session_, node);
     for (const auto node : after_) session::forget_node(*session_, node);
     boots_ = boots();
     end_ = AddressEnd::failed;
-    if (const auto set = take_to(plan_->bitrate); !set) return fail(left_alone(set.error()));
+    if (const auto set = take_to(*session_, *plan_, plan_->bitrate); !set)
+      return fail(left_alone(set.error()));
     const auto found = wait_until_on();
     if (!found) return fail(somewhere(found.error()));
     return *found > 0 ? Result<void>() : look_at_old();
@@ -97,15 +92,6 @@ class SwitchRun {
                             fmt::format("still answers: the drives were not switched off, and {} stays at {}",
                                         plan_->link->name(), session::settings_text(plan_->before)),
                             "what was written holds from their next start; the same line waits again"));
-  }
-
-  Result<void> take_to(std::uint32_t bitrate) {
-    const auto now = plan_->link->state();
-    if (!now) return fail(now.error());
-    const auto steps = session::plan_bus_up(plan_->link->name(), *now, {.bitrate = bitrate});
-    if (!steps) return fail(steps.error());
-    if (const auto set = session::set_up(*plan_->link, *now, *steps); !set) return set;
-    return session_->network().recover(session_->now() + kInterfaceComesUp);
   }
 
   std::vector<std::uint32_t> boots() const {
@@ -150,16 +136,18 @@ class SwitchRun {
     auto error = drive_error(Errc::timeout, after_.front(),
                              fmt::format("no drive answers at {}", bitrate_text(plan_->bitrate)),
                              fmt::format("{} has it now; switch the drives off and on, then `scan`", name));
-    if (!plan_->before.bitrate || !take_to(*plan_->before.bitrate)) return fail(std::move(error));
-    const auto there = session::scan(*session_, before_);
-    if (!there || there->empty()) {
-      if (!take_to(plan_->bitrate)) error.hint = "`bus status` shows the interface";
-      return fail(std::move(error));
-    }
+    std::uint8_t who = 0;
+    const auto back = take_back(*session_, *plan_, [&] {
+      const auto there = session::scan(*session_, before_);
+      if (there && !there->empty()) who = there->front().node;
+      return who != 0;
+    });
+    if (!back) error.hint = "`bus status` shows the interface";
+    if (!back || !*back) return fail(std::move(error));
     end_ = AddressEnd::awaits_restart;
-    const auto old = bitrate_text(*plan_->before.bitrate);
+    const auto old = old_bitrate_text(*plan_);
     return fail(drive_error(
-        Errc::negative, there->front().node,
+        Errc::negative, who,
         fmt::format(
             "still answers at {}: the restart did not put its new bitrate in force; {} is at {} again", old,
             name, old),
@@ -197,26 +185,21 @@ class SwitchRun {
 Result<BitrateSwitch> plan_switch(show::Desk& desk, std::unique_ptr<can::LinkControl> link,
                                   std::span<const AddressChange> changes, std::uint32_t bitrate,
                                   const AddressOptions& options, const std::optional<bool>& may_change) {
-  BitrateSwitch out{.bitrate = bitrate};
-  if (!link || changes.empty()) return out;
-  const auto now = link->state();
-  if (!now) return fail(now.error());
-  if (now->kind != "can") return out;
-  out.link = std::move(link);
-  out.before = *now;
-  if (now->bitrate == bitrate) {
-    out.why_not = fmt::format("it has {} already", bitrate_text(bitrate));
-  } else if (may_change == false) {
-    out.why_not = "it needs the right CAP_NET_ADMIN: " + can::right_command();
-  } else if (!restarts_over_bus(changes.front()) && options.patience == Duration::zero()) {
-    out.why_not = "the drives have to be switched off and on: with --wait 5min they are waited for";
-  } else {
-    std::vector<std::uint8_t> drives;
-    for (const auto& change : changes) drives.push_back(change.node);
-    const auto others = session::nodes_beside(*desk.session, drives);
-    if (!others) return fail(others.error());
-    if (!others->empty()) out.why_not = left_behind_text(out, *others);
+  if (changes.empty()) return BitrateSwitch{.bitrate = bitrate};
+  auto out = plan_bus_bitrate(std::move(link), bitrate, may_change);
+  if (!out || !out->follows()) return out;
+  if (!restarts_over_bus(changes.front()) && options.patience == Duration::zero()) {
+    out->why_not = "the drives have to be switched off and on: with --wait 5min they are waited for";
+    return out;
   }
+  std::vector<std::uint8_t> drives;
+  for (const auto& change : changes) drives.push_back(change.node);
+  const auto others = session::nodes_beside(*desk.session, drives);
+  if (!others) return fail(others.error());
+  if (!others->empty())
+    out->why_not =
+        fmt::format("node{} {} would be left at {}; -n all names all that answer",
+                    others->size() == 1 ? "" : "s", fmt::join(*others, ", "), old_bitrate_text(*out));
   return out;
 }
 

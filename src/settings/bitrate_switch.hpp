@@ -6,22 +6,12 @@
 #include <span>
 #include <string>
 
-#include "session/bus_setup.hpp"
 #include "settings/address_change.hpp"
+#include "settings/bus_bitrate.hpp"
 #include "show/desk.hpp"
 
 /// The interface of a bus goes to another bitrate together with all drives of the bus.
 namespace servoctl::settings {
-
-/// How an interface follows its drives.
-struct BitrateSwitch {
-  std::uint32_t bitrate = 0;                    ///< The new one, in bit/s.
-  std::unique_ptr<can::LinkControl> link = {};  ///< Null: the bus has no bitrate that could be set.
-  can::LinkState before = {};
-  std::string why_not = {};  ///< A sentence: why it is left alone; empty: it follows.
-
-  bool follows() const { return link != nullptr && why_not.empty(); }
-};
 
 /// Finds out whether the interface can follow; only reads, and listens as nodes_in_use() does. It is left
 /// alone where the right to change it is missing, where somebody uses the bus who would be left behind, and

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <set>
 
-#include "drive/enabling_write.hpp"
-#include "drive/standard_objects.hpp"
 #include "session/cob_id_check.hpp"
 #include "session/measure.hpp"
+#include "settings/energising.hpp"
 #include "settings/keeping_nodes.hpp"
 #include "settings/register_writes.hpp"
 #include "settings/stored_copies.hpp"
@@ -90,9 +89,9 @@ tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target&
 Result<drive::Meaning> writable_meaning(std::uint8_t node, const drive::Target& target,
                                         std::optional<od::DataType> type) {
   auto meaning = drive::meaning(target, node);
-  if (!od::writable(meaning.access)) {
-    return named(make_error(Errc::usage, "is read-only", "it can be read, not written"), node, target, " ");
-  }
+  if (!od::writable(meaning.access))
+    return named(make_error(Errc::usage, "is read-only", "`read` shows its value; servoctl cannot set it"),
+                 node, target, " ");
   if (type) meaning.type = *type;
   return meaning;
 }
@@ -110,28 +109,6 @@ Result<Change> change_to(const drive::Profile* profile, std::uint8_t node, const
   return out;
 }
 
-bool is_parameter(const drive::Profile& profile, const Change& change, const std::string& id) {
-  return drive::place_of(profile, id) == change.target.address;
-}
-
-bool enables(const Change& change) { return drive::is_enabling_write(change.target.address, change.data); }
-
-/// What the write does beside changing a value; empty when nothing.
-std::string_view reason_to_ask(const drive::Profile* profile, const Change& change) {
-  const auto* entry = change.target.entry;
-  const auto* parameter = change.target.parameter;
-  const auto index = change.target.address.index;
-  if (index == objects::kStoreIndex || index == objects::kRestoreIndex ||
-      (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command))
-    return "This starts an action, or stores or restores parameters.";
-  if (enables(change)) return "This enables the drive: the motor is energised and may move.";
-  if (profile != nullptr && is_parameter(*profile, change, profile->rules.nmt.node_id))
-    return "After a restart the drive has another node-ID.";
-  if (profile != nullptr && is_parameter(*profile, change, profile->rules.nmt.bitrate))
-    return "After a restart the drive has another bitrate.";
-  return {};
-}
-
 std::string effect_text(od::Effect effect) {
   switch (effect) {
     case od::Effect::immediate: return "at once";
@@ -143,14 +120,14 @@ std::string effect_text(od::Effect effect) {
 }
 
 /// A refusal that the family's password may explain says so.
-Error with_password_hint(const show::Desk& desk, const Change& change, Error error) {
-  if (desk.profile == nullptr || error.code != Errc::sdo_abort) return error;
+Error with_password_hint(const show::Desk& desk, const Change& change, const WriteOptions& options,
+                         Error error) {
+  if (desk.profile == nullptr || options.unlock || error.code != Errc::sdo_abort) return error;
   const auto& store = desk.profile->rules.store;
   const auto* password = desk.profile->parameter(store.unlock);
   const bool vendor_object = change.target.address.index >= 0x2000 && change.target.address.index < 0x6000;
   if (password == nullptr || !password->object || !store.unlock_open || !vendor_object) return error;
-  error.hint = fmt::format("it may be locked: `param set {} {}` unlocks", password->id, *store.unlock_open);
-  if (store.unlock_closed) error.hint += fmt::format(", {} closes", *store.unlock_closed);
+  error.hint = fmt::format("it may be locked by {}: add --unlock", password->id);
   return error;
 }
 
@@ -221,24 +198,6 @@ Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive
   return {};
 }
 
-Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) {
-  const auto no_power = desk.session->network().why_no_power();
-  for (const auto& change : changes)
-    if (!no_power.empty() && enables(change))
-      return fail(show::located(
-          make_error(Errc::refused, fmt::format("this enables the drive, and {}", no_power),
-                     "run servoctl where the bus is, or use its CAN interface: socketcand://HOST/can0"),
-          change.node, change.target.address));
-  for (const auto& change : changes) {
-    auto reason = reason_to_ask(desk.profile, change);
-    if (reason.empty()) reason = register_reason(desk, change);
-    if (reason.empty()) continue;
-    const auto question = fmt::format("Write {} on node {}? {}", name_of(change.target), change.node, reason);
-    if (const auto answer = desk.confirm(question); !answer) return answer;
-  }
-  return {};
-}
-
 namespace {
 
 report::Table change_table() {
@@ -275,7 +234,9 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, co
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
   KeepingNodes keeping(desk, changes);
   if (const auto opened = keeping.open(options); !opened) return fail(opened.error());
-  const bool energises = std::any_of(changes.begin(), changes.end(), enables);
+  const bool energises = std::any_of(changes.begin(), changes.end(), [&](const Change& change) {
+    return enables(change) || power_parameter(desk, change) != nullptr;
+  });
   const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
   const auto written = session::write_all(*desk.session, requests,
                                           options.read_back || options.keep || is_only_echoed(desk, changes));
@@ -283,11 +244,12 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, co
   for (const auto& change : changes)
     if (enables(change)) desk.session->energised().insert(change.node);
   tell_not_at_rest(desk, changes, written);
+  tell_power_parameters(desk, changes, written);
   auto table = change_table();
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
     table.rows.push_back(change_row(changes[i], written[i], keeping.kept(changes[i]), desk));
-    if (!written[i]) desk.errors.push_back(with_password_hint(desk, changes[i], written[i].error()));
+    if (!written[i]) desk.errors.push_back(with_password_hint(desk, changes[i], options, written[i].error()));
     if (written[i] && written[i]->answer_lost)
       desk.notices.push_back(
           fmt::format("node {}, object {}: the answer to the write was lost; the value read back is correct",

@@ -19,7 +19,7 @@ struct Shown {
   Value record;
 };
 
-Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object) {
+Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object, bool chinese) {
   const auto found = side.values.find(object);
   if (found == side.values.end()) return {};
   const show::Reading reading{side.node, drive::target_at(profile, object), {}, found->second};
@@ -31,7 +31,8 @@ Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object
   auto text = fields                  ? fmt::format("0x{:08X}", load_le(found->second))
               : found->second.empty() ? std::string("\"\"")
                                       : decoded.text;
-  if (const auto* label = std::get_if<std::string>(&decoded.label.data())) text += " " + *label;
+  const auto& shown = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
+  if (const auto* label = std::get_if<std::string>(&shown.data())) text += " " + *label;
   return {std::move(text), Record{{"value", decoded.value},
                                   {"raw", decoded.raw},
                                   {"unit", report::text_or_null(decoded.unit)},
@@ -59,6 +60,10 @@ bool is_unused(const Side& side, ObjectAddress object) {
 }
 
 }  // namespace
+
+std::string value_text(const drive::Profile* profile, const Side& side, ObjectAddress object, bool chinese) {
+  return show(profile, side, object, chinese).text;
+}
 
 Side side_of(const Backup& backup, std::string title) {
   Side out{std::move(title), backup.identity.node, {}};
@@ -139,8 +144,8 @@ Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, 
     if (sides == 2 && is_same(profile, object, a, b)) continue;
     ++out.different;
     const auto target = drive::target_at(profile_of(profile, a.values.count(object) > 0 ? a : b), object);
-    auto left = show(profile_of(profile, a), a, object);
-    auto right = show(profile_of(profile, b), b, object);
+    auto left = show(profile_of(profile, a), a, object, chinese);
+    auto right = show(profile_of(profile, b), b, object, chinese);
     table.rows.push_back({to_string(object), object.index, object.sub,
                           target.parameter != nullptr ? Value(target.parameter->id) : Value(),
                           report::text_or_null(chinese ? target.label_zh() : target.label()), left.text,

@@ -17,6 +17,9 @@ struct Side {
   const drive::Profile* profile = nullptr;  ///< What describes it, where that is not what describes both.
 };
 
+/// A value as people read it, with its unit or label; `-` where the side has none.
+std::string value_text(const drive::Profile* profile, const Side& side, ObjectAddress object, bool chinese);
+
 /// The values of a backup; what it left out is not compared.
 Side side_of(const Backup& backup, std::string title);
 

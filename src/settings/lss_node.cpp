@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "canopen/node_id.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
+#include "session/scan.hpp"
 #include "settings/address_change.hpp"
 
 namespace servoctl::settings {
@@ -62,10 +64,18 @@ class LssNodeRun {
     auto error = stored.error();
     const auto back =
         lss.order(canopen::lss_set_node(slave_->node.value_or(kUnconfigured)), "taken its old node-ID");
+    // It may have stored all the same, and only its answer was lost.
+    const bool may_hold = error.code != Errc::negative;
+    const bool undone =
+        back && (!may_hold || lss.order(canopen::lss_store(), "stored its configuration",
+                                        std::max(session_->options().timeout, kLssStorePatience)));
     error.message +=
-        back ? "; its node-ID is the old one again" : "; and it has not taken its old node-ID back";
-    if (error.code == Errc::timeout) out_.kept.reset();
-    return fail_with(back ? "not changed" : "not known", std::move(error));
+        !back ? "; and it has not taken its old node-ID back"
+        : undone
+            ? "; its node-ID is the old one again"
+            : "; its node-ID is the old one again, and which of them it has after power-off is not known";
+    if (may_hold) out_.kept.reset();
+    return fail_with(undone ? "not changed" : "not known", std::move(error));
   }
 
   bool restart() {
@@ -83,14 +93,13 @@ class LssNodeRun {
         session::wait_for_boot(*session_, from, change_->to, session_->now() + kLssBootPatience);
     if (!came) return void(fail_with("set; not looked for", came.error()));
     const auto identity = session::read_identity(*session_, change_->to);
+    if (!identity && identity.error().code != Errc::timeout)
+      return void(fail_with("set; not found", identity.error()));
     if (!identity)
       return void(fail_with(
           "set; not found",
           drive_error(
-              identity.error().code, change_->to,
-              "the slave has taken this node-ID, and does not answer "
-              "by it: " +
-                  identity.error().message,
+              Errc::timeout, change_->to, "the slave has taken this node-ID, and does not answer by it",
               change_->keep
                   ? "some start with it only when they are switched off and on, or by `nmt reset-comm -n all`, which resets all nodes"
                   : "some start with it only by `nmt reset-comm -n all`, which resets all nodes; what is not stored is lost with the power")));
@@ -110,13 +119,17 @@ class LssNodeRun {
     out_.result = slave_->is_unconfigured() ? "node-ID given" : "moved";
   }
 
-  /// It has no SDO then.
+  /// It has no SDO then, and not every slave answers the question for those without a node-ID.
   void find_without() {
     (void)session_->wait([] { return false; }, session_->now() + std::chrono::seconds(1));
+    std::vector<std::uint8_t> old;
+    if (slave_->node && !slave_->is_unconfigured()) old.push_back(*slave_->node);
+    const auto there = session::scan(*session_, old);
+    if (!there) return void(fail_with("set; not looked for", there.error()));
     LssDialogue lss(*session_, session_->options().timeout);
-    const auto answers = lss.ask(canopen::lss_identify_unconfigured());
-    if (!answers) return void(fail_with("set; not looked for", answers.error()));
-    out_.done = !answers->empty();
+    const auto now = lss.select(slave_->address);
+    if (!now && now.error().code != Errc::timeout) return void(fail_with("set; not looked for", now.error()));
+    out_.done = there->empty() && now && now->is_unconfigured();
     out_.result = out_.done ? "without a node-ID now" : "set; holds from its next start";
   }
 

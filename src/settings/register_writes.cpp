@@ -7,15 +7,51 @@
 #include "settings/comparison.hpp"
 
 namespace servoctl::settings {
+namespace {
+
+constexpr std::size_t kBytesOfRegister = 2;
+
+bool takes_its_address(const show::Desk& desk, const Change& change) {
+  if (desk.profile == nullptr || desk.profile->rules.modbus.node_id.empty()) return false;
+  return drive::place_of(*desk.profile, desk.profile->rules.modbus.node_id) == change.target.address &&
+         load_le(change.data) == 0;
+}
+
+/// What moves, or may move, the motor over Modbus; nothing on another network.
+std::vector<std::string> names_of_motion(const show::Desk& desk) {
+  if (desk.profile == nullptr || desk.session->modbus() == nullptr) return {};
+  const auto& rules = desk.profile->rules.modbus;
+  auto out = rules.at_rest;
+  out.insert(out.end(), rules.targets.begin(), rules.targets.end());
+  return out;
+}
+
+}  // namespace
+
+bool is_told_not_at_rest(const show::Desk& desk, ObjectAddress object) {
+  const auto names = names_of_motion(desk);
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return drive::place_of(*desk.profile, name) == object; });
+}
 
 Result<void> check_registers(const show::Desk& desk, std::span<const Change> changes) {
   const auto* line = desk.session->modbus();
   if (line == nullptr) return {};
-  for (const auto& change : changes)
+  for (const auto& change : changes) {
+    const auto refused = [&](Errc code, std::string what, std::string hint) {
+      return fail(drive_error(code, change.node, change.target.address, std::move(what), std::move(hint)));
+    };
     if (line->is_known(change.node) && !line->has_register(change.node, change.target.address))
-      return fail(drive_error(Errc::sdo_abort, change.node, change.target.address,
-                              "it has no Modbus register",
-                              "nothing was written; `param list` shows what has one"));
+      return refused(Errc::sdo_abort, "it has no Modbus register",
+                     "nothing was written; `param list` shows what has one");
+    if (change.data.size() != kBytesOfRegister)
+      return refused(Errc::usage,
+                     fmt::format("{} bytes do not go into a register, which has 2", change.data.size()),
+                     "nothing was written; leave --type out, or say u16 or i16");
+    if (takes_its_address(desk, change))
+      return refused(Errc::usage, "0 is the address of messages to all: it would answer nobody over Modbus",
+                     "nothing was written; addresses are 1 to 127");
+  }
   return {};
 }
 
@@ -34,11 +70,7 @@ bool is_only_echoed(const show::Desk& desk, std::span<const Change> changes) {
 
 void tell_not_at_rest(show::Desk& desk, std::span<const Change> changes,
                       std::span<const Result<session::Written>> written) {
-  if (desk.profile == nullptr || desk.session->modbus() == nullptr) return;
-  const auto& rules = desk.profile->rules.modbus;
-  auto names = rules.at_rest;
-  names.insert(names.end(), rules.targets.begin(), rules.targets.end());
-  for (const auto& name : names) {
+  for (const auto& name : names_of_motion(desk)) {
     const auto place = drive::place_of(*desk.profile, name);
     for (std::size_t i = 0; i < changes.size(); ++i)
       if (place == changes[i].target.address && load_le(changes[i].data) != 0 &&

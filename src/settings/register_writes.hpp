@@ -9,7 +9,8 @@
 
 namespace servoctl::settings {
 
-/// On Modbus: Errc::sdo_abort for a change of what has no register, before anything is written.
+/// On Modbus, before anything is written: Errc::sdo_abort for a change of what has no register, Errc::usage
+/// for one that does not go into a register, and for the unit address 0, by which nobody answers.
 Result<void> check_registers(const show::Desk& desk, std::span<const Change> changes);
 
 /// On Modbus: why to ask before a change of address, speed or framing; empty for any other.
@@ -23,5 +24,8 @@ bool is_only_echoed(const show::Desk& desk, std::span<const Change> changes);
 /// then. `written` is in the order of `changes`.
 void tell_not_at_rest(show::Desk& desk, std::span<const Change> changes,
                       std::span<const Result<session::Written>> written);
+
+/// Whether tell_not_at_rest() speaks of this object.
+bool is_told_not_at_rest(const show::Desk& desk, ObjectAddress object);
 
 }  // namespace servoctl::settings

@@ -11,6 +11,7 @@
 #include "canopen/cob_id.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/quantity.hpp"
+#include "session/setting_write.hpp"
 #include "settings/backup_file.hpp"
 #include "show/field_reader.hpp"
 
@@ -116,7 +117,27 @@ Result<void> check_means(const drive::Profile& profile, const RestoreJournal& jo
   return {};
 }
 
+/// Memory switch and password as they are now, unless the journal has them.
+Result<void> read_means(const show::Desk& desk, RestoreJournal& journal) {
+  if (!journal.means.empty()) return {};
+  for (const auto& mean : drive::means_of_writing(*desk.profile)) {
+    const auto value = desk.session->upload(journal.node, mean.first);
+    if (value) journal.means.emplace_back(mean.first, *value);
+    if (!value && value.error().code != Errc::sdo_abort) return fail(value.error());
+  }
+  return {};
+}
+
 }  // namespace
+
+bool worked_in_ram(const drive::Profile& profile, const RestoreJournal& journal) {
+  const auto& rules = profile.rules.store;
+  if (rules.flash_switch.empty() || !rules.to_flash) return false;
+  const auto flash = session::setting_write(profile, journal.node, {rules.flash_switch, *rules.to_flash});
+  return flash && std::any_of(journal.means.begin(), journal.means.end(), [&](const auto& mean) {
+           return mean.first == flash->object && mean.second != *flash->data;
+         });
+}
 
 std::filesystem::path journal_of(const std::filesystem::path& before) { return before.string() + ".journal"; }
 
@@ -142,14 +163,15 @@ Result<void> write_journal(const std::filesystem::path& path, const RestoreJourn
 
 Result<void> note_before(const show::Desk& desk, const std::filesystem::path& before,
                          const session::Snapshot& snapshot, RestoreJournal journal) {
-  if (journal.means.empty())
-    for (const auto& mean : drive::means_of_writing(*desk.profile)) {
-      const auto value = desk.session->upload(journal.node, mean.first);
-      if (value) journal.means.emplace_back(mean.first, *value);
-      if (!value && value.error().code != Errc::sdo_abort) return fail(value.error());
-    }
+  if (const auto read = read_means(desk, journal); !read) return read;
   const auto saved = write_file_atomically(before, backup_text(desk, make_backup(desk, snapshot)));
   return saved ? write_journal(journal_of(before), journal) : saved;
+}
+
+Result<void> note_journal(const show::Desk& desk, const std::filesystem::path& before,
+                          RestoreJournal journal) {
+  const auto read = read_means(desk, journal);
+  return read ? write_journal(journal_of(before), journal) : read;
 }
 
 Result<void> put_means_back(session::Session& session, const RestoreJournal& journal) {

@@ -29,6 +29,9 @@ struct RestoreJournal {
   std::vector<std::pair<ObjectAddress, Bytes>> means;
 };
 
+/// Whether the drive worked in its RAM when the restore began: what it answered may have been trials.
+bool worked_in_ram(const drive::Profile& profile, const RestoreJournal& journal);
+
 /// Where the journal of a restore stands whose values from before are in this file.
 std::filesystem::path journal_of(const std::filesystem::path& before);
 
@@ -45,6 +48,10 @@ Result<void> write_journal(const std::filesystem::path& path, const RestoreJourn
 /// journal without memory switch and password gets them as they are now.
 Result<void> note_before(const show::Desk& desk, const std::filesystem::path& before,
                          const session::Snapshot& snapshot, RestoreJournal journal);
+/// The same without the values, where the drive holds them already: those that stand in `before` are of an
+/// earlier restore, and stay.
+Result<void> note_journal(const show::Desk& desk, const std::filesystem::path& before,
+                          RestoreJournal journal);
 
 /// Memory switch and password as they were before what was cut off.
 Result<void> put_means_back(session::Session& session, const RestoreJournal& journal);

@@ -7,11 +7,12 @@
 #include "drive/cia402.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/cob_id_check.hpp"
 #include "session/pdo_change.hpp"
 #include "session/pdo_setup.hpp"
 #include "settings/change.hpp"
 #include "settings/comparison.hpp"
+#include "settings/energising.hpp"
+#include "settings/kept_address.hpp"
 #include "show/identity.hpp"
 #include "show/pdo_check.hpp"
 
@@ -36,6 +37,7 @@ Result<void> RestoreTarget::prepare() {
     if (const auto done = (this->*step)(); !done) return done;
   if (const auto still = check_standstill(); !still) return still;
   if (const auto fit = check_values(); !fit) return fit;
+  if (!choice_.with_address) keeps_address_ = tell_kept_address(*desk_, *backup_, title_, node_);
   return check_pdos();
 }
 
@@ -105,11 +107,9 @@ Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_vi
 /// Whether it stays as it is because of how the drive is reached; what is told of that is noted.
 bool RestoreTarget::is_out_of_reach(const Backup::Entry& entry) {
   if (!entry.bytes || desk_->session->modbus() == nullptr) return false;
-  if (!desk_->profile->rules.modbus.register_of(entry.object)) {
-    ++unreachable_;
-    return true;
-  }
-  if (!is_target(*desk_->profile, entry.object)) return false;
+  const bool reached = desk_->profile->rules.modbus.register_of(entry.object).has_value();
+  unreachable_ += reached ? 0U : 1U;
+  if (!reached || !is_target(*desk_->profile, entry.object)) return !reached;
   desk_->notices.push_back(
       fmt::format("node {}: {} stays as it is: a drive that an input enables would follow it at once", node_,
                   drive::target_at(desk_->profile, entry.object).label()));
@@ -122,6 +122,14 @@ bool RestoreTarget::is_own_address(ObjectAddress object) const {
   return is_address(desk_->profile, object) || (elsewhere && is_line_address(*desk_->profile, object));
 }
 
+Result<void> RestoreTarget::check_line_address(const Backup::Entry& entry) const {
+  const auto place = drive::place_of(*desk_->profile, desk_->profile->rules.modbus.node_id);
+  if (desk_->session->modbus() == nullptr || place != entry.object || load_le(*entry.bytes) != 0) return {};
+  return fail(drive_error(Errc::refused, node_, entry.object,
+                          "the backup has the address 0, with which it would answer nobody on Modbus",
+                          "nothing was written; leave --with-address out"));
+}
+
 Result<void> RestoreTarget::choose_values() {
   std::map<ObjectAddress, std::string_view> settings;
   for (const auto& setting : drive::settings_of(*desk_->profile))
@@ -130,6 +138,7 @@ Result<void> RestoreTarget::choose_values() {
     if (is_out_of_reach(entry)) continue;
     const bool address = is_own_address(entry.object);
     if (!entry.bytes || (address && !choice_.with_address)) continue;
+    if (const auto answers = check_line_address(entry); !answers) return answers;
     const auto setting = settings.find(entry.object);
     const auto reason =
         setting == settings.end() ? std::string_view("not in its data, or read-only") : setting->second;
@@ -219,7 +228,7 @@ Result<void> RestoreTarget::check_value(ObjectAddress object, const Bytes& data,
   if (!od::writable(meaning.access))
     return unfit(Errc::negative, object, "is read-only", "nothing was written");
   if (!value) return unfit(Errc::negative, object, value.error().message, "nothing was written");
-  if (const auto free = session::check_cob_id(desk_->profile, object, data, node_); !free)
+  if (const auto free = check_writable(*desk_, node_, object, data); !free)
     return unfit(Errc::refused, object, free.error().message, "nothing was written; " + free.error().hint);
   const auto limits = meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
   outside = !limits;

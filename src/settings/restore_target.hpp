@@ -35,6 +35,8 @@ class RestoreTarget {
   /// that no drive may have, and for PDOs that `pdo map` and `pdo enable` would refuse; Errc::negative, with
   /// line and entry, for a value that this drive cannot take.
   Result<void> prepare();
+  /// Part of it, to be asked again where somebody took their time: Errc::refused for an energised drive.
+  Result<void> check_standstill() const;
 
   const session::Identity& identity() const { return identity_; }
   const session::Values& wanted() const { return wanted_; }
@@ -42,12 +44,15 @@ class RestoreTarget {
   /// Values of a backup of ours that are outside of the family's limits, and why: the drive held them, but
   /// none is sent. They are not among wanted().
   const std::vector<Error>& left() const { return left_; }
+  /// Whether node-ID or bitrate of the backup is another, and not wanted.
+  bool keeps_address() const { return keeps_address_; }
 
  private:
   Result<void> check_identity();
-  Result<void> check_standstill() const;
   Result<void> check_at_rest() const;
   bool is_out_of_reach(const Backup::Entry& entry);
+  /// Modbus: 0 calls all of a line, and none answers to it.
+  Result<void> check_line_address(const Backup::Entry& entry) const;
   bool is_own_address(ObjectAddress object) const;
   Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
   Result<void> choose_values();
@@ -71,6 +76,7 @@ class RestoreTarget {
   session::Values present_;
   std::map<ObjectAddress, ObjectAddress> copies_;  ///< Added to wanted_ for what is to be kept, and of what.
   std::vector<Error> left_;
+  bool keeps_address_ = false;
   std::size_t unreachable_ = 0;  ///< Values without a Modbus register, where it is reached over Modbus.
 };
 

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
-#include "base/file_lock.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/identify.hpp"
+#include "settings/before_file.hpp"
 #include "settings/change.hpp"
 #include "settings/comparison.hpp"
+#include "settings/interrupted_restore.hpp"
 #include "settings/restore_journal.hpp"
 #include "settings/restore_keeping.hpp"
 #include "show/planned_messages.hpp"
@@ -28,41 +30,43 @@ class Restoring {
         title_(title),
         node_(node),
         before_(before),
-        undoes_(undoes),
-        options_(options) {}
+        options_(options),
+        attempt_{.backup = &backup, .title = title, .drive = {}, .undoes = undoes} {}
 
   Result<Restored> run() {
-    const auto locked = lock();
-    if (!locked) return fail(locked.error());
     const auto errors = desk_->errors.size();
     auto answer = carry_through();
     if (!answer) return fail(answer.error());
     const bool failed = desk_->errors.size() > errors;
     desk_->errors.insert(desk_->errors.end(), left_over_.begin(), left_over_.end());
-    return Restored{std::move(*answer), failed, end_};
+    return Restored{std::move(*answer), failed, end_, std::move(in_flash_), file_->path()};
   }
 
  private:
-  /// Two restores of one file and node would take each other's notes for their own.
-  Result<std::vector<FileLock>> lock() const {
-    std::vector<FileLock> out;
-    if (desk_->dry_run) return out;
-    for (const auto& file : {journal(), undoes_}) {
-      if (file.empty() || (!out.empty() && file == journal())) continue;
-      auto taken = FileLock::take(file.string() + ".lock");
-      if (!taken) return fail(taken.error());
-      if (!*taken)
-        return fail(Errc::refused,
-                    fmt::format("another servoctl is restoring {} into node {}", title_, node_),
-                    "wait until it ends, or find it with `ps`");
-      out.push_back(std::move(**taken));
-    }
-    return out;
+  /// Two restores would take each other's notes for their own.
+  Result<void> find_files() {
+    auto drive = session::read_identity(*desk_->session, node_);
+    if (!drive) return fail(drive.error());
+    attempt_.drive = std::move(*drive);
+    auto before = BeforeFile::take(*desk_, before_, title_, attempt_.drive);
+    if (!before) return fail(before.error());
+    file_.emplace(std::move(*before));
+    if (desk_->dry_run || attempt_.undoes.empty()) return {};
+    auto taken = FileLock::take(attempt_.undoes.string() + ".lock");
+    if (!taken) return fail(taken.error());
+    if (!*taken)
+      return fail(Errc::refused, fmt::format("another servoctl is restoring {} into node {}", title_, node_),
+                  "wait until it ends, or find it with `ps`");
+    undone_lock_.emplace(std::move(**taken));
+    return {};
   }
 
   Result<Value> carry_through() {
     if (const auto possible = check_keep(); !possible) return fail(possible.error());
-    if (const auto known = take_up_journals(); !known) return fail(known.error());
+    if (const auto found = find_files(); !found) return fail(found.error());
+    auto left = take_up_interrupted(*desk_, *file_, attempt_, options_);
+    if (!left) return fail(left.error());
+    left_ = std::move(*left);
     auto choice = options_.choice;
     choice.keep = options_.keep;
     RestoreTarget target(*desk_, *backup_, title_, node_, choice);
@@ -75,13 +79,16 @@ class Restoring {
       doubts_ = doubts_of_keeping(*desk_->profile, node_, title_, target.present(), target.wanted());
     for (const auto& doubt : doubts_) desk_->notices.push_back(doubt);
     const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
-    if (idle) return take_away_journals(result(std::move(comparison.record), said("nothing differs"), {}));
+    keeps_address_ = target.keeps_address();
+    if (idle) return take_away_journals(result(std::move(comparison.record), said(same()), {}));
     if (desk_->dry_run) {
       end_ = RestoreEnd::planned;
       return planned(target);
     }
-    if (const auto answer = desk_->confirm(question(comparison.different)); !answer)
-      return fail(answer.error());
+    auto agreed = desk_->confirm(question(comparison.different));
+    if (agreed) agreed = target.check_standstill();
+    if (!agreed) return fail(agreed.error());
+    differs_ = comparison.different > 0 || options_.resume;
     if (const auto noted = note(target); !noted) return fail(noted.error());
     if (const auto back = put_means_back(*desk_->session, left_); !back) return fail(back.error());
     return carry_out(target, std::move(comparison.record));
@@ -115,57 +122,12 @@ class Restoring {
     return {};
   }
 
-  fs::path journal() const { return journal_of(before_); }
-
-  /// A restore that was cut off is gone on with or undone, never begun anew: what the drive held before is in
-  /// its file, and must not be replaced by what it holds now.
-  Result<void> take_up_journals() {
-    const auto found = read_journal(*desk_, journal());
-    if (!found) return fail(found.error());
-    if (*found && !options_.resume)
-      return fail(Errc::refused, fmt::format("a restore of {} to node {} was interrupted", title_, node_),
-                  fmt::format("--resume continues it; `restore {} -n {}` restores the old values",
-                              before_.string(), node_));
-    if (!*found && options_.resume)
-      return fail(Errc::usage,
-                  fmt::format("there is nothing to resume: {} does not exist", journal().string()),
-                  "leave --resume out");
-    if (options_.resume) return resume(**found);
-    if (undoes_.empty()) return {};
-    const auto undone = read_journal(*desk_, undoes_);
-    if (!undone) return fail(undone.error());
-    if (!*undone || (*undone)->node != node_) return {};
-    left_ = **undone;
-    // What went to the flash has to go there again.
-    options_.keep = options_.keep || keeps(left_);
-    options_.unlock = options_.unlock || left_.unlock;
-    return {};
-  }
-
-  Result<void> resume(const RestoreJournal& found) {
-    if (found.checksum != checksum(*backup_) || found.node != node_)
-      return fail(Errc::refused, fmt::format("{} is not the file being restored to node {}", title_, node_),
-                  fmt::format("resuming needs the same values; `restore {} -n {}` restores the old ones",
-                              before_.string(), node_));
-    left_ = found;
-    options_.choice = {.with_address = found.with_address,
-                       .force = found.force,
-                       .skip_invalid = options_.choice.skip_invalid};
-    options_.keep = keeps(found);
-    options_.unlock = found.unlock;
-    return {};
-  }
-
-  /// To keep them is not asked again of a family that cannot: it would fail for ever.
-  bool keeps(const RestoreJournal& journal) const {
-    return journal.keep && session::can_store(*desk_->profile);
-  }
-
   std::string question(std::size_t different) const {
     if (different == 0)
       return fmt::format(
           "All values of node {} already match {}. {}?", node_, title_,
           options_.keep ? "Store them in the drive" : "Restore its memory switch and password");
+    if (different == 1) return fmt::format("Write 1 value of {} to node {}?", title_, node_);
     return fmt::format("Write {} values of {} to node {}?", different, title_, node_);
   }
 
@@ -180,12 +142,13 @@ class Restoring {
     return show::planned_messages(*desk_, rehearsal.messages());
   }
 
-  /// What the drive holds now, beside the backup: the way back when everything else fails. One that is gone
-  /// on with has noted it already.
+  /// What the drive holds now, beside the backup. A restore that is gone on with has noted it already.
   Result<void> note(const RestoreTarget& target) {
     if (options_.resume) return {};
     session::Snapshot snapshot;
-    snapshot.identity = target.identity();
+    snapshot.identity = attempt_.drive;
+    snapshot.identity.hardware_version = target.identity().hardware_version;
+    snapshot.identity.software_version = target.identity().software_version;
     for (const auto& [object, data] : target.present()) snapshot.entries.push_back({object, data, {}});
     RestoreJournal journal;
     journal.checksum = checksum(*backup_);
@@ -195,13 +158,26 @@ class Restoring {
     journal.keep = options_.keep;
     journal.unlock = options_.unlock;
     journal.means = left_.means;
-    return note_before(*desk_, before_, snapshot, std::move(journal));
+    // Of a drive that holds the values already nothing is old: those from before an earlier restore stay.
+    std::error_code ignored;
+    if (!differs_ && fs::exists(file_->path(), ignored))
+      return note_journal(*desk_, file_->path(), std::move(journal));
+    tell_other_name();
+    return note_before(*desk_, file_->path(), snapshot, std::move(journal));
+  }
+
+  void tell_other_name() const {
+    for (const auto& other : file_->passed_over())
+      if (other.path == before_)
+        desk_->notices.push_back(fmt::format("{} is left as it is, {}: the old values of node {} go to {}",
+                                             before_.string(), other.origin.why, node_,
+                                             file_->path().string()));
   }
 
   Value take_away_journals(Value done) {
     std::error_code ignored;
-    fs::remove(journal(), ignored);
-    if (!left_.checksum.empty() && !undoes_.empty()) fs::remove(undoes_, ignored);
+    fs::remove(file_->journal(), ignored);
+    if (!left_.checksum.empty() && !attempt_.undoes.empty()) fs::remove(attempt_.undoes, ignored);
     return done;
   }
 
@@ -210,54 +186,34 @@ class Restoring {
         session::restore(*desk_->session, desk_->profile, node_, target.present(), target.wanted(),
                          {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
     end_ = end_of(outcome);
+    in_flash_ = outcome.in_flash;
     for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
-    desk_->notices.push_back(fmt::format("the old values of node {} are in {}", node_, before_.string()));
-    if (!outcome.failure) return take_away_journals(result(std::move(record), said("restored"), outcome));
-    desk_->errors.push_back(*outcome.failure);
-    add_astray(outcome);
+    if (differs_)
+      desk_->notices.push_back(
+          fmt::format("the old values of node {} are in {}", node_, file_->path().string()));
+    const auto* const stored = keeps_address_ ? "nothing else differs; stored" : "nothing differs; stored";
+    const auto* const done = differs_ || !options_.keep ? "restored" : stored;
+    if (!outcome.failure) return take_away_journals(result(std::move(record), said(done), outcome));
+    for (auto& error : errors_of(outcome, desk_->profile, node_)) desk_->errors.push_back(std::move(error));
     auto out = result(std::move(record), failed_state(outcome), outcome);
     // Undone to the end: nothing is left to go on with. What is being taken back itself stays begun.
-    if (outcome.rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
-    // To go on would be refused in the same way, and so would be to undo it: `store` is what is left to do.
+    if (end_ == RestoreEnd::rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
+    // `store` is what is left to do.
     if (outcome.all_written && is_refused_store(*outcome.failure)) return take_away_journals(std::move(out));
     desk_->notices.push_back(fmt::format("node {}: --resume continues once the cause is removed", node_));
     return out;
   }
 
-  static bool is_refused_store(const Error& error) {
-    return error.abort_code && error.object && error.object->index == objects::kStoreIndex;
-  }
-
-  void add_astray(const session::RestoreOutcome& outcome) {
-    for (const auto object : outcome.astray) {
-      desk_->errors.push_back(
-          drive_error(Errc::negative, node_, object,
-                      "it may hold neither the value that was to be written nor its old one"));
-    }
-  }
-
+  const char* same() const { return keeps_address_ ? "nothing else differs" : "nothing differs"; }
   std::string said(std::string state) const {
     return left_over_.empty() ? state : fmt::format("{}; {} left as it is", state, left_over_.size());
-  }
-
-  static RestoreEnd end_of(const session::RestoreOutcome& outcome) {
-    if (!outcome.failure) return RestoreEnd::done;
-    if (outcome.rolled_back) return RestoreEnd::rolled_back;
-    if (outcome.all_written) return RestoreEnd::not_kept;
-    return outcome.astray.empty() ? RestoreEnd::left : RestoreEnd::astray;
-  }
-
-  static std::string_view failed_state(const session::RestoreOutcome& outcome) {
-    if (outcome.rolled_back) return "failed; every value is as it was before";
-    if (outcome.all_written) return "written and read back; see the error";
-    return outcome.astray.empty() ? "failed; what was written stays written" : "failed; see the errors";
   }
 
   /// Of all values; null where it is not known of one.
   Value kept_value(const std::optional<session::RestoreOutcome>& outcome) const {
     if (!outcome || outcome->kept == session::Kept::unknown) return {};
-    if (outcome->kept == session::Kept::yes && !doubts_.empty()) return {};
-    return outcome->kept == session::Kept::yes;
+    return outcome->kept == session::Kept::yes && !doubts_.empty() ? Value()
+                                                                   : outcome->kept == session::Kept::yes;
   }
 
   Value result(Record record, std::string_view state,
@@ -271,13 +227,18 @@ class Restoring {
   const Backup* backup_;
   std::string title_;
   std::uint8_t node_;
-  fs::path before_;
-  fs::path undoes_;
+  fs::path before_;  ///< The usual name for the old values.
   RestoringOptions options_;
+  RestoreAttempt attempt_;
+  std::optional<BeforeFile> file_;
+  std::optional<FileLock> undone_lock_;
   std::vector<Error> left_over_;     ///< Values outside of the limits.
   std::vector<std::string> doubts_;  ///< Of keeping.
   RestoreJournal left_;              ///< Of what was cut off and is gone on with, or undone.
+  bool differs_ = true;              ///< The drive does not hold the values yet.
+  bool keeps_address_ = false;       ///< The backup's would be another.
   RestoreEnd end_ = RestoreEnd::idle;
+  std::vector<ObjectAddress> in_flash_;
 };
 
 }  // namespace

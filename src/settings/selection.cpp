@@ -27,7 +27,8 @@ Result<Selection> selection_of(const drive::Profile& profile, std::string_view w
   if (groups.count(std::string(word)) == 0) {
     std::vector<std::string> parts{"communication", "pdo", "params"};
     parts.insert(parts.end(), groups.begin(), groups.end());
-    return fail(Errc::usage, fmt::format("'{}' is not a part of the settings", word), "use " + one_of(parts));
+    return fail(Errc::usage, fmt::format("'{}' is not a part of the settings", word),
+                fmt::format("write one of {}", fmt::join(parts, ", ")));
   }
   return Selection{[&profile, group = std::string(word)](ObjectAddress object) {
     const auto* parameter = profile.parameter(object);

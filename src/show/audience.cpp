@@ -9,6 +9,8 @@ Result<void> Audience::confirm(std::string_view question) {
 void Audience::emit(const report::Record& /*sample*/, std::string_view /*line*/) {}
 void Audience::write(std::string_view /*lines*/) {}
 void Audience::tell(std::string_view /*text*/) {}
+void Audience::show_progress(std::string_view /*line*/, TimePoint /*now*/) {}
+void Audience::show_share(double /*share*/, TimePoint /*begin*/, TimePoint /*now*/) {}
 
 std::unique_ptr<LiveView> Audience::open_view(const LiveView::Layout& /*layout*/) { return nullptr; }
 

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/result.hpp"
+#include "base/time.hpp"
 #include "report/value.hpp"
 #include "show/live_view.hpp"
 
@@ -28,6 +29,12 @@ class Audience {
   virtual void write(std::string_view lines);
   /// Shows lines at once where people look (stderr), whatever form the result has.
   virtual void tell(std::string_view text);
+  /// One line on a terminal that says where a long wait is; the next one takes its place, and whatever else
+  /// is shown wipes it. `now` is on the clock of the bus.
+  virtual void show_progress(std::string_view line, TimePoint now);
+  /// The same of what is not on the bus of the line: how much of it is done, from 0 to 1, on a clock of its
+  /// own.
+  virtual void show_share(double share, TimePoint begin, TimePoint now);
   /// Columns of the terminal that it looks at; 0: none, or not known.
   virtual std::size_t width() const { return 0; }
   /// A table that is updated where it stands, until the answer is destroyed; null where samples are lines or

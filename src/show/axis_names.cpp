@@ -101,10 +101,15 @@ void AxisNames::put_into(Record& record) const {
     return std::find_if(record.begin(), record.end(), [&](const auto& f) { return f.key == key; });
   };
   const auto node = has(kNode);
-  if (node == record.end() || has(kAxis) != record.end()) return;
+  const auto axis = has(kAxis);
+  if (node == record.end() || (axis != record.end() && !axis->value.is_null())) return;
   const auto number = node_in(node->value);
   const auto name = number ? of(*number) : std::string_view();
-  if (!name.empty()) record.insert(node, {std::string(kAxis), name, node->show, {}});
+  if (name.empty()) return;
+  if (axis != record.end())
+    axis->value = name;
+  else
+    record.insert(node, {std::string(kAxis), name, node->show, {}});
 }
 
 void AxisNames::put_into(Value& value) const {

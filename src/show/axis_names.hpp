@@ -21,7 +21,7 @@ class AxisNames {
   /// A sentence with names for numbers: `node 3: no answer` is `feeder: no answer`, `nodes 3, 4` is
   /// `feeder, lift`, `-n 3` in a command is `-n feeder`. Nodes without a name stay numbers.
   std::string in(std::string_view text) const;
-  /// Puts `axis` before every `node` of the records and tables of a result.
+  /// Puts `axis` before every `node` of the records and tables of a result, and into an `axis` that is null.
   void put_into(report::Value& value) const;
   void put_into(report::Record& record) const;
 

@@ -2,16 +2,58 @@
 
 #include <fmt/format.h>
 
+#include "can/slcan_place.hpp"
 #include "drive/bitrate.hpp"
+#include "session/adapter_link.hpp"
 #include "session/bitrate_search.hpp"
 #include "session/bus_setup.hpp"
+#include "session/can_network.hpp"
 #include "session/open_bus.hpp"
+#include "session/own_bitrate.hpp"
 
 namespace servoctl::show {
 namespace {
 
 /// A heartbeat of a second is heard.
 constexpr Duration kSilence = std::chrono::milliseconds(1500);
+/// So long may an adapter take to be open again.
+constexpr Duration kBackAgain = std::chrono::seconds(2);
+constexpr std::string_view kSerialBus = "slcan:";
+
+/// The adapter of a session listens for itself, and is given back.
+Result<void> hold_silence(const Desk& desk, can::LinkControl& link) {
+  auto& session = *desk.session;
+  auto silent = session::hold_silence(
+      link, kSilence, session.options().cancelled,
+      [&](double share, TimePoint begin, TimePoint now) { desk.show_share(share, begin, now); });
+  if (!session.url().starts_with(kSerialBus)) return silent;
+  const auto back = session.network().recover(session.now() + kBackAgain);
+  return silent && !back ? fail(back.error()) : silent;
+}
+
+Result<std::unique_ptr<can::LinkControl>> link_behind(session::Session& session) {
+  const auto url = session::canonical_url(session.url());
+  if (!url.starts_with(kSerialBus)) return can::open_link(url);
+  auto place = can::parse_slcan_place(url.substr(kSerialBus.size()));
+  if (!place) return fail(place.error());
+  return std::make_unique<session::AdapterLink>(session, std::move(*place));
+}
+
+/// Who has to say it otherwise from now on.
+void tell_bitrate(Desk& desk, const can::LinkState& before, std::uint32_t bitrate) {
+  const auto at = drive::bitrate_text(bitrate);
+  const auto url = session::canonical_url(desk.session->url());
+  if (!url.starts_with(kSerialBus)) {
+    desk.notices.push_back(fmt::format("nodes answered at {0}: {1} stays at it (it was at {2})", at, url,
+                                       session::settings_text(before)));
+    return;
+  }
+  auto place = can::parse_slcan_place(url.substr(kSerialBus.size()));
+  if (!place) return;
+  place->bitrate = bitrate;
+  desk.notices.push_back(fmt::format("nodes answered at {}: from now on `-b {}`, because {} means {}", at,
+                                     can::slcan_url(*place), url, session::settings_text(before)));
+}
 
 std::string asking_question(const std::string& name, const can::LinkState& now) {
   const auto receivers = can::link_receivers(name);
@@ -32,36 +74,27 @@ std::string text_of(const session::Asked& asked) {
 
 }  // namespace
 
-Result<void> check_all_bitrates(const Desk& desk) {
-  const auto& url = desk.session->url();
-  if (desk.session->can() != nullptr && session::canonical_url(url).find(':') == std::string::npos) return {};
-  return fail(Errc::usage, fmt::format("--all-bitrates needs a CAN interface, and {} is none", url),
-              url.starts_with("slcan:")
-                  ? "name its bitrates one after the other: `scan -b slcan:PORT@250k`"
-                  : "only an interface of the kernel has a bitrate that can be set: can0");
-}
-
 Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<const std::uint8_t> nodes) {
-  if (const auto possible = check_all_bitrates(desk); !possible) return fail(possible.error());
   auto& session = *desk.session;
-  const auto name = session::canonical_url(session.url());
-  const auto link = can::open_link(name);
+  if (const auto possible = session::check_own_bitrate(session.url(), "scan --all-bitrates"); !possible)
+    return fail(possible.error());
+  const auto link = link_behind(session);
   if (!link) return fail(link.error());
+  const auto& name = (*link)->name();
   const auto now = (*link)->state();
   if (!now) return fail(now.error());
   if (!session.energised().empty())
     return fail(Errc::refused, fmt::format("{} stays at its bitrate: a drive is energised over it", name),
                 "`disable -n all` first");
-  if (const auto silent = session::hold_silence(**link, kSilence, session.options().cancelled); !silent)
-    return fail(silent.error());
+  if (session.can()->sync() != nullptr)
+    return fail(Errc::refused, fmt::format("{} stays at its bitrate: SYNC is produced on it", name),
+                "`sync stop` first");
+  if (const auto silent = hold_silence(desk, **link); !silent) return fail(silent.error());
   if (const auto agreed = desk.confirm(asking_question(name, *now)); !agreed) return fail(agreed.error());
   auto done = session::scan_bitrates(session, **link, nodes, session::usual_bitrates(),
                                      [&](const session::Asked& asked) { desk.tell(text_of(asked)); });
   if (!done) return fail(done.error());
-  if (done->bitrate && done->bitrate != now->bitrate)
-    desk.notices.push_back(fmt::format("nodes answered at {0}: {1} stays at it (it was at {2})",
-                                       drive::bitrate_text(*done->bitrate), name,
-                                       session::settings_text(*now)));
+  if (done->bitrate && done->bitrate != now->bitrate) tell_bitrate(desk, *now, *done->bitrate);
   if (!done->bitrate)
     desk.notices.push_back(fmt::format("no node answered at any bitrate; {} is at {} again", name,
                                        session::settings_text(*now)));

@@ -20,6 +20,14 @@ void Desk::tell(std::string_view text) const {
   if (audience != nullptr) audience->tell(text);
 }
 
+void Desk::show_progress(std::string_view line) const {
+  if (audience != nullptr && session != nullptr) audience->show_progress(line, session->now());
+}
+
+void Desk::show_share(double share, TimePoint begin, TimePoint now) const {
+  if (audience != nullptr) audience->show_share(share, begin, now);
+}
+
 void Desk::tell_value(const report::Value& value) const {
   if (audience != nullptr)
     audience->tell(report::to_text(chinese ? report::chinese_value(value) : value, audience->width()));

@@ -21,9 +21,12 @@ struct Desk {
   session::Session* session = nullptr;      ///< Set when the command needs a bus.
   const drive::Profile* profile = nullptr;  ///< Set when a family was named, or is needed.
   std::vector<std::uint8_t> nodes;          ///< That are meant; 0 stands for all.
+  /// Numbers that are given to drives: nobody may come there while a question waits.
+  std::vector<std::uint8_t> free_nodes;
   /// What the loads of nodes move, where somebody said it: `20mm` means something there.
   std::map<std::uint8_t, drive::LoadUnit> loads;
   bool chinese = false;                ///< Names in Chinese where there are any.
+  bool json = false;                   ///< What is said is read by programs: in English, but for names.
   bool dry_run = false;                ///< Show what would be sent, send nothing.
   bool keeps_samples = false;          ///< `--json`: the result carries what emit() was given.
   bool wants_records = false;          ///< `-o jsonl`: samples are shown as records, one a line.
@@ -38,9 +41,13 @@ struct Desk {
   void emit(const report::Record& sample, std::string_view line) const;
   void write(std::string_view lines) const;
   void tell(std::string_view text) const;
-  /// The same of what is to be laid out: it fits the terminal.
+  void show_progress(std::string_view line) const;
+  void show_share(double share, TimePoint begin, TimePoint now) const;
+  /// As tell(), of what is to be laid out: it fits the terminal.
   void tell_value(const report::Value& value) const;
   std::unique_ptr<LiveView> open_view(const LiveView::Layout& layout) const;
+  /// Whether sentences and words beside the names are to be Chinese.
+  bool speaks_chinese() const { return chinese && !json; }
   bool audience_is_gone() const { return audience != nullptr && audience->is_gone(); }
 };
 

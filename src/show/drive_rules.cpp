@@ -66,12 +66,18 @@ Value units(const Rules& rules) {
       {drive::Measure::increments_per_turn, "increments_per_turn"},
       {drive::Measure::pulses_per_turn, "pulses_per_turn"},
       {drive::Measure::rated_torque, "rated_torque"}};
-  for (const auto& [measure, name] : names)
-    if (const auto found = rules.units.find(measure); found != rules.units.end())
-      out.push_back({name, ways_text(found->second)});
-  if (!rules.learn.speed.empty())
-    out.push_back({"measured", fmt::format("by `units learn`, against {}", rules.learn.speed)});
-  return out.empty() ? Value() : Value(std::move(out));
+  bool known = !rules.learn.speed.empty();
+  const auto add = [&](const char* name, bool is, const std::string& text) {
+    known = known || is;
+    out.push_back({name, is ? Value(text) : Value(), is ? report::Show::everywhere : report::Show::json});
+  };
+  for (const auto& [measure, name] : names) {
+    const auto found = rules.units.find(measure);
+    const bool is = found != rules.units.end();
+    add(name, is, is ? ways_text(found->second) : std::string());
+  }
+  add("measured", !rules.learn.speed.empty(), fmt::format("by `units learn`, against {}", rules.learn.speed));
+  return known ? Value(std::move(out)) : Value();
 }
 
 Value identity(const Rules& rules) {
@@ -87,12 +93,12 @@ Value identity(const Rules& rules) {
 
 Value numbering(const Rules& rules) {
   List out;
-  for (const auto& rule : rules.numbering)
-    out.emplace_back(fmt::format("{}{} from 0x{:04X}{}", rule.prefix,
-                                 rule.group != 0   ? "a.bc"
-                                 : rule.base == 16 ? "hex"
-                                                   : "n",
-                                 rule.index, rule.unlisted ? ", unlisted numbers too" : ""));
+  for (const auto& rule : rules.numbering) {
+    const auto names = rule.prefix + (rule.group != 0 ? "a.bc" : rule.base == 16 ? "hex" : "n");
+    out.emplace_back(rule.unlisted
+                         ? fmt::format("{} from 0x{:04X} on, unlisted numbers too", names, rule.index)
+                         : fmt::format("{} from 0x{:04X} on", names, rule.index));
+  }
   return out.empty() ? Value() : Value(std::move(out));
 }
 
@@ -178,6 +184,8 @@ Value modbus(const Rules& rules, bool chinese) {
 
 Value motion(const Rules& rules) {
   const auto& r = rules.motion;
+  std::vector<std::string> power_parameters;
+  for (const auto& parameter : r.without_controlword) power_parameters.push_back(parameter.name);
   return Record{
       {"position", optional(r.position), Show::everywhere, "position mode"},
       {"velocity", optional(r.velocity), Show::everywhere, "velocity mode"},
@@ -190,7 +198,8 @@ Value motion(const Rules& rules) {
       {"quick_stop_stays_enabled", number_list(rules.quick_stop_stays_enabled), Show::everywhere,
        "605Ah that stays energised"},
       {"inputs_active_low", number_list(r.inputs_active_low), Show::everywhere, "60FDh bits, 0 when on"},
-      {"speed_limit", text_list(r.speed_limit), Show::everywhere, "speed limit in torque mode"}};
+      {"speed_limit", text_list(r.speed_limit), Show::everywhere, "speed limit in torque mode"},
+      {"without_controlword", text_list(power_parameters), Show::everywhere, "energises without 6040h"}};
 }
 
 Value fault(const Rules& rules) {
@@ -228,12 +237,15 @@ Value caution_text(const Rules& rules, bool chinese) {
 }  // namespace
 
 std::string way_text(const drive::Quotient& way) {
-  std::string out = way.learned ? "measured" : "";
+  std::string out;
   if (!way.learned || !way.multiply.empty()) append(out, product(way.multiply), " × ");
   for (const auto object : way.power_of_two) append(out, fmt::format("2^{}", to_string(object)), " × ");
   if (!way.divide.empty()) out += " / (" + product(way.divide) + ")";
+  if (way.learned) out = out.empty() ? "measured" : fmt::format("measured × {}", out);
+  std::string conditions;
   for (const auto& condition : way.when)
-    out += fmt::format(", when {} is {}", to_string(condition.object), condition.value);
+    append(conditions, fmt::format("{} = {}", to_string(condition.object), condition.value));
+  if (!conditions.empty()) out += fmt::format(" (when {})", conditions);
   return out + (way.assumed ? " (assumed)" : "");
 }
 

@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/naming.hpp"
+#include "report/catalogue.hpp"
 #include "show/fault_records.hpp"
 #include "show/object_records.hpp"
 #include "show/records.hpp"
@@ -38,7 +39,7 @@ Explanation of_entry(const drive::Profile& profile, const od::Object& object, co
   auto topic = heading(
       profile.family, "object", drive::entry_name(object, entry),
       fmt::format("{}: {}", to_string(entry.address), entry.name),
-      entry.name_zh.empty() ? std::string() : fmt::format("{}: {}", to_string(entry.address), entry.name_zh));
+      entry.name_zh.empty() ? std::string() : fmt::format("{}：{}", to_string(entry.address), entry.name_zh));
   topic.object = entry.address;
   return {std::move(topic), Found::object, {}, object_details(profile, object, entry, chinese)};
 }
@@ -92,12 +93,16 @@ void add_parameters(const TopicQuery& query, const drive::Profile& profile, bool
   for (const auto& parameter : profile.parameters) {
     const bool named = query.names(parameter.name) || query.names(parameter.name_zh);
     const bool placed = address && parameter.object == address;
-    if (&parameter != by_id && (by_name_only || (!named && !placed))) continue;
+    const bool meant = &parameter == by_id || (!by_name_only && (named || placed));
+    if (!meant && (by_name_only || !query.mentions(parameter.name + "\n" + parameter.name_zh))) continue;
     auto topic = heading(profile.family, "parameter", parameter.id, parameter.id + " " + parameter.name,
                          parameter.name_zh.empty() ? std::string() : parameter.id + " " + parameter.name_zh);
     topic.object = parameter.object;
     topic.line = source_of_line(parameter.line);
-    out.push_back({std::move(topic), Found::parameter, {}, parameter_record(parameter, chinese)});
+    out.push_back({std::move(topic),
+                   meant ? Found::parameter : Found::title,
+                   {},
+                   parameter_record(parameter, chinese)});
   }
 }
 
@@ -123,12 +128,19 @@ Explanation of_faults(const drive::Profile& profile, const std::vector<const dri
     topic.line = source_of_line(first.line);
     return {std::move(topic), Found::fault, {}, fault_record(first, chinese)};
   }
-  return {heading(profile.family, "fault", code,
-                  fmt::format("{}: {} faults share this code", code, faults.size()),
-                  fmt::format("{}：{} 个故障共用此代码", code, faults.size())),
+  auto shared = fmt::format("{}: {} faults share this code", code, faults.size());
+  auto shared_zh = report::in_chinese(shared);
+  return {heading(profile.family, "fault", code, std::move(shared), std::move(shared_zh)),
           Found::fault,
           {},
           fault_table(faults, chinese)};
+}
+
+/// As people write what a panel shows: `AL09` for `AL.09`.
+std::string without_signs(std::string_view panel) {
+  std::string out(panel);
+  std::erase_if(out, [](char c) { return c == '.' || c == '-'; });
+  return out;
 }
 
 void add_faults(const TopicQuery& query, const drive::Profile& profile, bool by_name_only, bool chinese,
@@ -141,11 +153,19 @@ void add_faults(const TopicQuery& query, const drive::Profile& profile, bool by_
   std::vector<const drive::Fault*> named;
   for (const auto& fault : profile.faults) {
     const bool second = fault.extra.size() >= kTellingCode && query.names(fault.extra);
-    const bool called = query.names(fault.panel) || second ||
+    const bool called = query.names(fault.panel) || query.names_display(fault.panel) || second ||
                         (!by_name_only && (query.names(fault.name) || query.names(fault.name_zh)));
+    const bool of_its_code = !called && code && fault.code == code;
     if (called) named.push_back(&fault);
-    if (!called && code && fault.code == code) of_code.push_back(&fault);
+    if (of_its_code) of_code.push_back(&fault);
+    if (!called && !of_its_code && !by_name_only && query.mentions(fault.name + "\n" + fault.name_zh)) {
+      out.push_back(of_faults(profile, {&fault}, chinese));
+      out.back().found = Found::title;
+    }
   }
+  if (named.empty())
+    for (const auto& fault : profile.faults)
+      if (!fault.panel.empty() && query.names(without_signs(fault.panel))) named.push_back(&fault);
   for (const auto* fault : named) out.push_back(of_faults(profile, {fault}, chinese));
   if (of_code.size() > kFewFaults) {
     out.push_back(of_faults(profile, of_code, chinese));
@@ -164,12 +184,15 @@ void add_abort(const TopicQuery& query, const drive::Profile& profile, std::vect
   const bool own = profile.rules.abort_texts.count(number) > 0;
   if (!own && error_class != 0x05 && error_class != 0x06 && error_class != 0x08) return;
   const auto name = fmt::format("0x{:08X}", number);
-  const auto words_zh = abort_words(&profile, true, number);
+  const std::string words_zh(report::chinese_word(abort_words(&profile, true, number)));
   const auto words = abort_words(&profile, false, number);
+  constexpr std::string_view kTitle = "SDO abort code {}: {}";
   auto topic =
-      heading(profile.family, "abort", name, fmt::format("SDO abort code {}: {}", name, words),
-              words_zh == words ? std::string() : fmt::format("SDO 中止代码 {}：{}", name, words_zh));
+      heading(profile.family, "abort", name, fmt::format(kTitle, name, words),
+              words_zh == words ? std::string()
+                                : fmt::format(fmt::runtime(report::chinese_word(kTitle)), name, words_zh));
   topic.text = canopen::sdo_abort_hint(number);
+  topic.text_zh = report::in_chinese(topic.text);
   topic.line = canopen::is_standard_sdo_abort(number) ? "CiA 301, 7.2.4.3.17" : "";
   out.push_back({std::move(topic), Found::abort});
 }
@@ -226,34 +249,33 @@ std::vector<std::string> explained_names(std::span<const Library> libraries) {
 }
 
 drive::Topic exit_code_topic() {
-  auto out = heading(kProgram, "exit", "exit codes", "Exit codes of servoctl", "servoctl 的退出码");
-  out.also = {"exit", "exit code", "退出码"};
-  out.columns = {"exit code", "error.code"};
-  out.columns_zh = {"退出码", "error.code"};
-  const auto row = [&](int code, std::string_view name, std::string text, std::string text_zh) {
-    out.rows.push_back(
-        {{fmt::format("{}", code), std::string(name)}, std::move(text), std::move(text_zh), {}});
+  const auto chinese = [](std::string_view english) { return std::string(report::chinese_word(english)); };
+  constexpr std::string_view kTitle = "Exit codes of servoctl";
+  constexpr std::string_view kCode = "exit code";
+  auto out = heading(kProgram, "exit", "exit codes", std::string(kTitle), chinese(kTitle));
+  out.also = {"exit", std::string(kCode), chinese(kCode)};
+  out.columns = {std::string(kCode), "error.code"};
+  out.columns_zh = {chinese(kCode), "error.code"};
+  const auto row = [&](int code, std::string_view name, std::string_view text) {
+    out.rows.push_back({{fmt::format("{}", code), std::string(name)}, std::string(text), chinese(text), {}});
   };
-  const auto error = [&](Errc code, std::string text, std::string text_zh) {
-    row(exit_code(code), servoctl::name(code), std::move(text), std::move(text_zh));
+  const auto error = [&](Errc code, std::string_view text) {
+    row(exit_code(code), servoctl::name(code), text);
   };
-  row(0, "", "done", "完成");
-  error(Errc::negative, "it ran, and the answer is no: a difference, a failed check, an incomplete result",
-        "已执行，结果为否：有差异、检查未通过或结果不完整");
-  error(Errc::usage, "the request itself is wrong; nothing was sent", "命令本身有误，未发送任何内容");
-  error(Errc::bus, "the bus is missing, down or lost", "总线不存在、未启动或中断");
-  error(Errc::timeout, "the node did not answer in time", "节点未及时应答");
-  error(Errc::sdo_abort, "the drive answered and refused", "驱动器应答并拒绝");
-  error(Errc::protocol, "the drive answered with something the protocol does not allow",
-        "驱动器的应答不符合协议");
-  error(Errc::file, "a file cannot be read, written or parsed", "文件无法读取、写入或解析");
+  row(0, "", "done");
+  error(Errc::negative, "it ran, and the answer is no: a difference, a failed check, an incomplete result");
+  error(Errc::usage, "the request itself is wrong; nothing was sent");
+  error(Errc::bus, "the bus is missing, down or lost");
+  error(Errc::timeout, "the node did not answer in time");
+  error(Errc::sdo_abort, "the drive answered and refused");
+  error(Errc::protocol, "the drive answered with something the protocol does not allow");
+  error(Errc::file, "a file cannot be read, written or parsed");
   error(
       Errc::refused,
       "refused for safety: a confirmation is missing (--yes), --read-only forbids it, or the drive is not what "
-      "-d says",
-      "出于安全拒绝：缺少确认 (--yes)、--read-only 不允许，或驱动器与 -d 不符");
-  error(Errc::bug, "a fault of servoctl itself", "servoctl 自身的错误");
-  error(Errc::interrupted, "interrupted by Ctrl-C", "被 Ctrl-C 中断");
+      "-d says");
+  error(Errc::bug, "a fault of servoctl itself");
+  error(Errc::interrupted, "interrupted by Ctrl-C");
   return out;
 }
 

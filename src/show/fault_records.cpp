@@ -5,6 +5,7 @@
 #include "base/text.hpp"
 #include "canopen/emergency.hpp"
 #include "drive/cia402.hpp"
+#include "report/catalogue.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::show {
@@ -80,6 +81,13 @@ report::Record fault_record(const drive::Fault& fault, bool chinese) {
   return out;
 }
 
+std::string alarm_words(const drive::Profile* profile, bool chinese, std::uint16_t code) {
+  constexpr std::string_view kUnlisted = "not listed in the manual";
+  if (profile == nullptr || drive::faults_of(profile->faults, profile->rules.emergency, code, {}).empty())
+    return std::string(chinese ? report::chinese_word(kUnlisted) : kUnlisted);
+  return fault_words(profile, chinese, code);
+}
+
 std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16_t code,
                         const std::array<std::uint8_t, 5>& vendor) {
   if (profile == nullptr) return canopen::emergency_text(code);
@@ -108,15 +116,15 @@ report::Value ToldFault::record() const {
   return report::Record{{"code", code ? report::Value(*code) : report::Value()}, {"text", text}};
 }
 
+constexpr std::string_view kNoCode = "the drive is in fault and tells no code (603Fh)";
+
 ToldFault told_fault(const drive::Profile* profile, bool chinese, std::optional<std::uint16_t> code,
                      std::optional<std::uint16_t> statusword) {
   const auto state = statusword ? std::optional(drive::decode_state(*statusword)) : std::nullopt;
   const bool in_fault =
       state == drive::DriveState::fault || state == drive::DriveState::fault_reaction_active;
   if (code.value_or(0) != 0) return {true, code, fault_words(profile, chinese, *code)};
-  if (in_fault)
-    return {true, std::nullopt,
-            chinese ? "处于故障状态，无故障代码" : "the drive is in fault and tells no code (603Fh)"};
+  if (in_fault) return {true, std::nullopt, std::string(chinese ? report::chinese_word(kNoCode) : kNoCode)};
   return {code.has_value(), code, {}};
 }
 

@@ -26,6 +26,9 @@ inline constexpr std::size_t kFewFaults = 3;
 std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16_t code,
                         const std::array<std::uint8_t, 5>& vendor = {});
 
+/// The same for the alarm number of an object of the family's own, which the classes of CiA 301 are not for.
+std::string alarm_words(const drive::Profile* profile, bool chinese, std::uint16_t code);
+
 /// What a drive says of its fault, by 603Fh and the statusword; either may be unknown.
 struct ToldFault {
   bool known = false;                 ///< Whether anything tells it.

@@ -43,12 +43,11 @@ struct Words {
                        word(back.state));
   }
   std::string operator()(const session::NodeEvent::Doubled& doubled) const {
-    if (is_ring())
-      return (chinese ? "两个从站使用同一个地址: " : "two slaves answer under its address: ") + doubled.by;
-    return (chinese ? "两个节点使用同一个节点号: " : "two nodes answer under this node-ID: ") + doubled.by;
+    if (is_ring()) return fmt::format("two slaves answer under its address: {}", doubled.by);
+    return fmt::format("two nodes answer under this node-ID: {}", doubled.by);
   }
   std::string operator()(const session::NodeEvent::StateError& error) const {
-    return fmt::format("{} 0x{:04X}: {}", chinese ? "状态错误" : "state error", error.code, error.text);
+    return fmt::format("state error 0x{:04X}: {}", error.code, error.text);
   }
   std::string operator()(const canopen::Emergency& e) const {
     if (e.is_reset()) return "EMCY 0x0000: error reset or no error";

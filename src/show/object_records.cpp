@@ -136,4 +136,10 @@ std::vector<std::string> object_values(const drive::Profile& profile, const od::
   return out;
 }
 
+Result<void> check_parameters(const drive::Profile& profile) {
+  if (!profile.parameters.empty()) return {};
+  return fail(Errc::negative, fmt::format("{} has no panel parameters", profile.family),
+              fmt::format("`objects -d {}` lists its objects", profile.family));
+}
+
 }  // namespace servoctl::show

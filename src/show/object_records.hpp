@@ -27,4 +27,7 @@ report::Record object_details(const drive::Profile& profile, const od::Object& o
 /// What the values of an entry stand for: `3 Profile velocity mode`, in their order.
 std::vector<std::string> object_values(const drive::Profile& profile, const od::Entry& entry, bool chinese);
 
+/// Errc::negative for a family without parameters: then none fits, whatever is looked for.
+Result<void> check_parameters(const drive::Profile& profile);
+
 }  // namespace servoctl::show

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "drive/standard_mode.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/word_bits.hpp"
+#include "report/told.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
 
@@ -110,14 +112,15 @@ void append_value(const PdoField& field, const od::Value& value, bool chinese, s
   if (number != nullptr && (object == objects::kStatusword || object == objects::kControlword)) {
     fmt::format_to(std::back_inserter(out), "0x{:04X} ", *number);
     const auto word = static_cast<std::uint16_t>(*number);
-    out += object == objects::kControlword ? drive::controlword_words(word, mode)
-                                           : drive::statusword_words(word, mode, chinese);
+    const auto language = chinese ? report::chinese_word : nullptr;
+    out += object == objects::kControlword ? drive::controlword_words(word, mode, language)
+                                           : drive::statusword_words(word, mode, language);
     return;
   }
   const bool plain = meaning.encoding == od::Encoding::plain;
   if (plain && meaning.scale != 1)
-    fmt::format_to(std::back_inserter(out), "{:.12g}", drive::scaled(meaning, value));
-  else if (plain && number != nullptr)
+    out += plain_number(drive::scaled(meaning, value), 12);
+  else if (plain && number != nullptr && !meaning.bits)
     out += fmt::format_int(*number).c_str();
   else if (const auto* whole = std::get_if<std::int64_t>(&value); plain && whole != nullptr)
     out += fmt::format_int(*whole).c_str();
@@ -148,16 +151,16 @@ std::int8_t mode_in(const PdoView& view, ByteSpan data) {
 
 void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out, std::int8_t mode) {
   if (!shows_values(view, data)) {
-    out += to_hex(data);
-    out += view.fields.empty() ? " (mapping not known)"
-           : view.assumed      ? " (not as long as its factory mapping)"
-                               : " (shorter than its mapping)";
+    const std::string_view why = view.fields.empty() ? "{} (mapping not known)"
+                                 : view.assumed      ? "{} (not as long as its factory mapping)"
+                                                     : "{} (shorter than its mapping)";
+    out += report::told(chinese, why, to_hex(data));
     return;
   }
   if (const auto told = mode_in(view, data); told != 0) mode = told;
   bool first = true;
   for (const auto& field : view.fields) {
-    if (!std::exchange(first, false)) out += ", ";
+    if (!std::exchange(first, false)) out += chinese ? "，" : ", ";
     out += field.name;
     out += ' ';
     append_value(field, field.value(data), chinese, out, mode);

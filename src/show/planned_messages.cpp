@@ -17,7 +17,10 @@ std::string object_text(const session::PlannedMessage& message) {
 }
 
 std::string name_text(const Desk& desk, const session::PlannedMessage& message) {
-  if (message.write) return drive::target_at(desk.profile, message.write->object).label();
+  if (message.write) {
+    const auto target = drive::target_at(desk.profile, message.write->object);
+    return desk.chinese ? target.label_zh() : target.label();
+  }
   if (message.life_sign)
     return message.life_sign->kind == session::LifeSign::Kind::guarding ? "node guarding" : "heartbeat";
   const auto command = session::nmt_command(*message.state);

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "base/number.hpp"
+#include "canopen/node_id.hpp"
+#include "drive/standard_objects.hpp"
 #include "session/measure.hpp"
 #include "show/records.hpp"
 
@@ -60,6 +62,17 @@ Value missing_cell(const Desk& desk, const Reading& reading) {
   return fmt::format("abort 0x{:08X} {}", *code, abort_words(desk, *code));
 }
 
+/// Of a consumer heartbeat time (CiA 301, 7.5.2.19): whose heartbeat, and how long without one.
+std::string watched_text(ObjectAddress object, ByteSpan bytes) {
+  constexpr std::size_t kBytes = 4;
+  if (object.index != objects::kConsumerHeartbeatIndex || object.sub == 0 || bytes.size() != kBytes)
+    return {};
+  const auto word = load_le(bytes);
+  const auto node = word >> 16U;
+  if (node == 0 || node > canopen::kLastNode) return {};
+  return fmt::format(" = node {}, {} ms", node, word & 0xFFFFU);
+}
+
 List reading_row(const Desk& desk, const Reading& reading) {
   const bool chinese = desk.chinese;
   const auto& target = reading.target;
@@ -85,7 +98,8 @@ List reading_row(const Desk& desk, const Reading& reading) {
                       std::holds_alternative<std::int64_t>(decoded.raw.data());
   Value hex;
   // Where the value is hexadecimal already, once is enough.
-  const bool told = drive::meaning(reading.target, reading.node).bits;
+  const bool told = drive::meaning(reading.target, reading.node).bits &&
+                    std::holds_alternative<std::uint64_t>(decoded.raw.data());
   if (number && !told) hex = fmt::format("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
   const auto label = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
   row.insert(row.end(), {Value(decoded.text), Value(decoded.type), decoded.value, decoded.raw,
@@ -143,11 +157,12 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
   out.unit = std::string(meaning.unit);
   out.text = shortened(drive::plain_text(meaning, *value), bytes.size());
   if (meaning.scale != 1 && plain)
-    out.text += fmt::format(" = {:.12g} {}", drive::scaled(meaning, *value), meaning.unit);
+    out.text += fmt::format(" = {} {}", plain_number(drive::scaled(meaning, *value), 12), meaning.unit);
   else if (!meaning.unit.empty())
     out.text += " " + out.unit;
   auto familiar = familiar_value(meaning, *value);
   if (!familiar.text.empty()) out.text += " = " + familiar.text;
+  out.text += watched_text(reading.target.address, bytes);
   out.familiar = std::move(familiar.record);
   if (const auto* label = drive::label_of(meaning, *value)) {
     out.label = label->label;

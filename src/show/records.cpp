@@ -25,6 +25,12 @@ Value object_record(const std::optional<ObjectAddress>& object) {
   return Record{{"index", object->index}, {"sub", object->sub}};
 }
 
+Value abort_record(const Error& error, std::string_view words) {
+  if (!error.abort_code) return {};
+  return Record{{"code", fmt::format("0x{:08X}", *error.abort_code)},
+                {"text", words.empty() ? canopen::sdo_abort_text(*error.abort_code) : std::string(words)}};
+}
+
 Value words(std::string_view text) {
   List out;
   for (const auto word : split(text, ' ')) out.emplace_back(word);
@@ -73,16 +79,15 @@ std::string abort_words(const drive::Profile* profile, bool chinese, std::uint32
   return canopen::sdo_abort_text(code);
 }
 
-void name_abort(const Desk& desk, Error& error) {
+void name_abort(const drive::Profile* profile, bool chinese, Error& error) {
   if (!error.abort_code) return;
   const auto generic = canopen::sdo_abort_text(*error.abort_code);
-  const auto words = abort_words(desk, *error.abort_code);
+  const auto words = abort_words(profile, chinese, *error.abort_code);
   if (words == generic) return;
   const auto at = error.message.find(generic);
-  if (!canopen::is_standard_sdo_abort(*error.abort_code) && at != std::string::npos)
+  // Of a standard code the manual has words in Chinese alone.
+  if (at != std::string::npos && (chinese || !canopen::is_standard_sdo_abort(*error.abort_code)))
     error.message.replace(at, generic.size(), words);
-  else if (desk.chinese)
-    error.message += " — " + words;
 }
 
 Value marks_record(const std::vector<od::Mark>& marks) {
@@ -109,18 +114,15 @@ Record doubts_record(const od::Doubts& doubts) {
 }
 
 Value error_record(const Error& error, std::string_view abort_words) {
-  Record out{{"code", name(error.code)},
-             {"exit", exit_code(error.code)},
-             {"message", error.message},
-             {"hint", report::text_or_null(error.hint)}};
-  if (error.node) out.push_back({"node", *error.node});
-  if (error.object) out.push_back({"object", to_string(*error.object)});
-  if (error.abort_code)
-    out.push_back({"abort", Record{{"code", fmt::format("0x{:08X}", *error.abort_code)},
-                                   {"text", abort_words.empty() ? canopen::sdo_abort_text(*error.abort_code)
-                                                                : std::string(abort_words)}}});
-  if (error.line) out.push_back({"line", *error.line});
-  return out;
+  return Record{{"code", name(error.code)},
+                {"exit", exit_code(error.code)},
+                {"message", error.message},
+                {"hint", report::text_or_null(error.hint)},
+                {"axis"},
+                {"node", error.node ? Value(*error.node) : Value()},
+                {"object", error.object ? Value(to_string(*error.object)) : Value()},
+                {"abort", abort_record(error, abort_words)},
+                {"line", error.line ? Value(*error.line) : Value()}};
 }
 
 Value od_value(const std::optional<od::Value>& value) {

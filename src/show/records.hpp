@@ -20,12 +20,12 @@ std::string abort_words(const Desk& desk, std::uint32_t code);
 /// Of the abort code of an error, in English, for records; empty when it has none.
 std::string abort_words(const Desk& desk, const Error& error);
 
-/// Puts these words into the message of an abort: in place of "not listed in CiA 301", or behind the
-/// standard's words where people read Chinese.
-void name_abort(const Desk& desk, Error& error);
+/// Puts these words into the message of an abort: in place of "not listed in CiA 301", and of the standard's
+/// words in Chinese.
+void name_abort(const drive::Profile* profile, bool chinese, Error& error);
 
-/// An error as it stands in JSON. `abort_words`: what its abort code means on this drive; empty: as in CiA
-/// 301.
+/// An error as it stands in JSON, every key there; its `axis` is null, AxisNames::put_into() says it.
+/// `abort_words`: what its abort code means on this drive; empty: as in CiA 301.
 report::Value error_record(const Error& error, std::string_view abort_words = {});
 
 /// `{"min":[2240,2260]}`: fields and the lines of the manual; null when there are none.

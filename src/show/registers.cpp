@@ -27,7 +27,7 @@ Alarm alarm_of(const Desk& desk, const Result<Bytes>& answer) {
   if (!answer) return {};
   const auto code = static_cast<std::uint16_t>(load_le(*answer));
   if (code == 0) return {Value("none"), Value(code)};
-  return {Value(fmt::format("0x{:04X} {}", code, fault_words(desk.profile, desk.chinese, code, {}))),
+  return {Value(fmt::format("0x{:04X} {}", code, alarm_words(desk.profile, desk.chinese, code))),
           Value(code)};
 }
 

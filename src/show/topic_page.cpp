@@ -7,6 +7,7 @@
 #include "base/folded.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "report/chinese_marks.hpp"
 #include "report/chinese_value.hpp"
 
 namespace servoctl::show {
@@ -18,6 +19,11 @@ constexpr std::size_t kGap = 2;
 
 const std::string& in_language(const std::string& english, const std::string& zh, bool chinese) {
   return chinese && !zh.empty() ? zh : english;
+}
+
+/// A word of the program.
+std::string_view word(std::string_view english, bool chinese) {
+  return chinese ? report::chinese_word(english) : english;
 }
 
 /// The text behind `head`, its further lines below its beginning.
@@ -50,6 +56,24 @@ void add_paragraphs(std::string_view text, std::size_t width, Lines& out) {
   end();
 }
 
+/// A cell, or a line of a picture, in Chinese. Its words stand where they stood.
+std::string in_words(std::string text, const drive::Topic& topic) {
+  const auto is_letter = [&](std::size_t at) {
+    return at < text.size() && ((text[at] >= 'a' && text[at] <= 'z') || (text[at] >= 'A' && text[at] <= 'Z'));
+  };
+  for (const auto& [english, chinese] : topic.words_zh)
+    for (auto at = text.find(english); at != std::string::npos; at = text.find(english, at + 1)) {
+      auto size = english.size();
+      if ((at > 0 && is_letter(at - 1)) || is_letter(at + size)) continue;
+      auto room = display_width(english);
+      // What is wider takes the blanks behind it, but for one.
+      while (room < display_width(chinese) && text.compare(at + size, 2, "  ") == 0) ++size, ++room;
+      const bool before_blank = at + size < text.size() && text[at + size] == ' ';
+      text.replace(at, size, before_blank ? pad_right(chinese, room) : chinese);
+    }
+  return text;
+}
+
 /// The rows of a topic as columns: the cells, and behind them what the row is about.
 class TopicTable {
  public:
@@ -61,7 +85,7 @@ class TopicTable {
     for (std::size_t column = 0; column < heads_.size(); ++column) {
       widths_.push_back(display_width(heads_[column]));
       for (const auto row : rows_)
-        widths_[column] = std::max(widths_[column], display_width(topic_.rows[row].cells[column]));
+        widths_[column] = std::max(widths_[column], display_width(cell(topic_.rows[row].cells[column])));
     }
   }
 
@@ -78,8 +102,16 @@ class TopicTable {
 
   std::string cells_of(const std::vector<std::string>& cells) const {
     std::string out;
-    for (std::size_t i = 0; i < cells.size(); ++i) out += pad_right(cells[i], widths_[i] + kGap);
+    for (std::size_t i = 0; i < cells.size(); ++i) out += pad_right(cell(cells[i]), widths_[i] + kGap);
     return out;
+  }
+
+  /// A cell is one word or none: `off` is not the end of `cut-off`.
+  std::string cell(const std::string& english) const {
+    if (chinese_)
+      for (const auto& [word, chinese] : topic_.words_zh)
+        if (word == english) return chinese;
+    return english;
   }
 
   /// Where the cells leave too little room, the text stands below them.
@@ -105,9 +137,10 @@ class TopicTable {
   std::vector<std::size_t> widths_;
 };
 
-void add_picture(const std::string& picture, Lines& out) {
+void add_picture(const drive::Topic& topic, bool chinese, Lines& out) {
   out.emplace_back();
-  for (const auto line : split(std::string_view(picture), '\n')) out.emplace_back(line);
+  for (const auto line : split(std::string_view(topic.picture), '\n'))
+    out.push_back(chinese ? in_words(std::string(line), topic) : std::string(line));
   while (!out.empty() && trim(out.back()).empty()) out.pop_back();
 }
 
@@ -140,21 +173,24 @@ void add_marks(const Explanation& explanation, bool chinese, std::size_t width, 
   // A record tells the rest itself.
   const bool bare = explanation.details.is_null();
   const std::pair<std::string_view, std::string> marks[] = {
-      {"kind", bare ? topic.kind : std::string()},
+      {"kind", bare ? std::string(word(topic.kind, chinese)) : std::string()},
       {"name", bare ? topic.name : std::string()},
-      {"also", also},
+      {"also", chinese ? report::chinese_marks(also) : also},
       {"family", topic.family},
       {"object", bare ? object_in_words(topic) : std::string()},
       {"note", in_language(topic.note, topic.note_zh, chinese)},
-      {"assumed", topic.assumed ? "the manual does not state all of it" : ""},
-      {"figure", topic.figure ? "the manual has part of it as a picture only: see there" : ""},
+      {"assumed", std::string(topic.assumed ? word("the manual does not state all of it", chinese) : "")},
+      {"picture",
+       std::string(topic.figure ? word("the manual has part of it as a picture only: see there", chinese)
+                                : "")},
       {of_manual ? "manual line" : "source", bare ? line : std::string()}};
   std::size_t left = 0;
   for (const auto& mark : marks)
-    if (!mark.second.empty()) left = std::max(left, mark.first.size());
+    if (!mark.second.empty()) left = std::max(left, display_width(word(mark.first, chinese)));
   out.emplace_back();
   for (const auto& mark : marks)
-    if (!mark.second.empty()) add_hanging(pad_right(mark.first, left + kGap), mark.second, width, out);
+    if (!mark.second.empty())
+      add_hanging(pad_right(std::string(word(mark.first, chinese)), left + kGap), mark.second, width, out);
 }
 
 }  // namespace
@@ -165,11 +201,11 @@ Lines topic_page(const Explanation& explanation, bool chinese, std::size_t width
   add_hanging("", in_language(topic.title, topic.title_zh, chinese), width, out);
   if (explanation.rows.empty()) add_paragraphs(in_language(topic.text, topic.text_zh, chinese), width, out);
   if (!topic.rows.empty()) TopicTable(explanation, chinese, width).add_to(out);
-  if (explanation.rows.empty() && !topic.picture.empty()) add_picture(topic.picture, out);
+  if (explanation.rows.empty() && !topic.picture.empty()) add_picture(topic, chinese, out);
   if (!explanation.details.is_null()) {
     out.emplace_back();
-    const auto details = report::to_text(
-        chinese ? report::chinese_value(explanation.details) : explanation.details, width);
+    const auto details =
+        report::to_text(chinese ? report::chinese_value(explanation.details) : explanation.details, width);
     for (const auto line : split(std::string_view(details), '\n')) out.emplace_back(line);
     while (out.back().empty()) out.pop_back();
   }
@@ -178,19 +214,44 @@ Lines topic_page(const Explanation& explanation, bool chinese, std::size_t width
   return out;
 }
 
+namespace {
+
+std::vector<std::string_view> kinds_of(std::span<const Explanation> explanations) {
+  std::vector<std::string_view> out;
+  for (const auto& each : explanations)
+    if (std::find(out.begin(), out.end(), each.topic.kind) == out.end()) out.push_back(each.topic.kind);
+  return out;
+}
+
+}  // namespace
+
+Lines topic_names(std::span<const Explanation> explanations, bool chinese, std::size_t width) {
+  const auto kinds = kinds_of(explanations);
+  std::size_t left = 0;
+  for (const auto kind : kinds) left = std::max(left, display_width(word(kind, chinese)));
+  Lines out;
+  for (const auto kind : kinds) {
+    std::vector<std::string_view> names;
+    for (const auto& each : explanations)
+      if (each.topic.kind == kind && std::find(names.begin(), names.end(), each.topic.name) == names.end())
+        names.push_back(each.topic.name);
+    add_hanging(pad_right(std::string(word(kind, chinese)), left + kGap),
+                fmt::format("{}", fmt::join(names, ", ")), width, out);
+  }
+  for (auto& line : out) line = printable(line);
+  return out;
+}
+
 Lines topic_list(std::span<const Explanation> explanations, bool chinese, std::size_t width) {
   constexpr std::size_t kWidestName = 24;
-  std::vector<std::string_view> kinds;
+  const auto kinds = kinds_of(explanations);
   std::size_t left = 0;
-  for (const auto& each : explanations) {
-    const std::string_view kind = each.topic.kind;
-    if (std::find(kinds.begin(), kinds.end(), kind) == kinds.end()) kinds.push_back(kind);
+  for (const auto& each : explanations)
     left = std::max(left, std::min(display_width(each.topic.name), kWidestName));
-  }
   Lines out;
   for (const auto kind : kinds) {
     if (!out.empty()) out.emplace_back();
-    out.emplace_back(kind);
+    out.emplace_back(word(kind, chinese));
     for (const auto& each : explanations) {
       if (each.topic.kind != kind) continue;
       const auto head = "  " + pad_right(clip(each.topic.name, kWidestName), left + kGap);

@@ -18,4 +18,8 @@ std::vector<std::string> topic_page(const Explanation& explanation, bool chinese
 std::vector<std::string> topic_list(std::span<const Explanation> explanations, bool chinese,
                                     std::size_t width);
 
+/// The names alone, those of a kind behind each other.
+std::vector<std::string> topic_names(std::span<const Explanation> explanations, bool chinese,
+                                     std::size_t width);
+
 }  // namespace servoctl::show

@@ -22,6 +22,21 @@ std::string key_of(std::string_view text) {
   return out;
 }
 
+/// What displays are compared by: without marks between letters and digits, and zeros before a number.
+std::string display_key(std::string_view text) {
+  std::string out;
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto key = key_of(text);
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const bool behind_digit = !out.empty() && is_digit(out.back());
+    const bool mark = key[i] == '.' || key[i] == '-';
+    const bool zero = key[i] == '0' && i + 1 < key.size() && is_digit(key[i + 1]);
+    if ((mark || zero) && !behind_digit) continue;
+    out += key[i];
+  }
+  return out;
+}
+
 /// With a blank between Chinese and the digits behind it.
 std::string with_numbers_apart(std::string_view text) {
   std::string out;
@@ -138,6 +153,14 @@ TopicQuery::TopicQuery(std::string_view words)
 }
 
 bool TopicQuery::names(std::string_view name) const { return !key_.empty() && key_of(name) == key_; }
+
+bool TopicQuery::names_display(std::string_view shown) const {
+  const auto key = display_key(shown);
+  const bool telling = key.find_first_of("0123456789") != std::string::npos && key.front() >= 'a';
+  return telling && key == display_key(whole_);
+}
+
+bool TopicQuery::mentions(std::string_view text) const { return is_in(folded(text)); }
 
 bool TopicQuery::names_topic(const drive::Topic& topic) const {
   return names(topic.name) ||

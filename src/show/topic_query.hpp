@@ -35,6 +35,10 @@ class TopicQuery {
   bool has_value() const { return assigned_; }  ///< `6098h=7`.
   /// Whether the name is what was typed; blanks and `_` in them make no difference.
   bool names(std::string_view name) const;
+  /// The same of what a panel shows, where people leave out marks and zeros: `AL9` and `al 09` are `AL.09`.
+  bool names_display(std::string_view shown) const;
+  /// Whether all words stand in the text.
+  bool mentions(std::string_view text) const;
 
   /// Why the topic is an answer, by the best reason; empty where it is none. `dictionary` knows the names of
   /// objects; null: only their indexes are understood.

@@ -58,7 +58,9 @@ Result<bool> plan_fault(const CellSpec& spec, std::string_view text, std::span<D
     const auto alarm = alarm_of(drive->profile(), text.substr(0, at));
     if (!alarm || !delay)
       return spec.wrong(
-          fmt::format("'fault={}' is not CODE@TIME or PANEL@TIME, such as fault=0xFF00@2s", text));
+          fmt::format("'fault={}' is not CODE@TIME or PANEL@TIME; options stand behind all drives: "
+                      "sim:gsd600@1,dm@2?fault=0xFF00@2s",
+                      text));
     drive->raise_fault_at(*alarm, now + *delay);
   }
   return true;

@@ -1,6 +1,7 @@
 // What was heard, and what it means.
 #include <fmt/format.h>
 
+#include "base/number.hpp"
 #include "drive/bitrate.hpp"
 #include "traffic/link_findings.hpp"
 
@@ -23,7 +24,7 @@ double in_seconds(Duration time) { return std::chrono::duration<double>(time).co
 /// How the bitrate is found, and taken; only an interface of the kernel has commands for it.
 std::string find_bitrate(const LinkFacts* facts) {
   if (facts == nullptr)
-    return "try the other bitrates: behind the @ of slcan:PORT@500k, or at the interface that this bus leads to";
+    return "find the bitrate: `bus detect slcan:PORT`, or `bus detect` on the machine that has the interface";
   return fmt::format("`bus detect {0}`, and `bus up {0} --bitrate …`", facts->name);
 }
 
@@ -146,13 +147,13 @@ void add_duplicates(std::vector<Finding>& out, const BusPicture& picture) {
 void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
   const auto time = in_seconds(picture.length());
   if (picture.frames() == 0) {
-    out.push_back({Level::note, "silence", fmt::format("nothing was heard in {:.3g} s", time),
+    out.push_back({Level::note, "silence", fmt::format("nothing was heard in {} s", plain_number(time, 3)),
                    "drives without heartbeat and PDOs are silent until they are asked",
                    facts == nullptr ? std::string("`doctor --active` asks them")
                                     : fmt::format("`doctor {} --active` asks them", facts->name)});
     return;
   }
-  auto text = fmt::format("{} frames in {:.3g} s", picture.frames(), time);
+  auto text = fmt::format("{} frames in {} s", picture.frames(), plain_number(time, 3));
   if (const auto load = picture.load()) text += fmt::format(", load {:.1f} %", *load);
   if (!picture.nodes().empty()) text += fmt::format("; alive: node {}", fmt::join(picture.nodes(), ", "));
   out.push_back({Level::ok, "traffic", std::move(text), {}, {}});

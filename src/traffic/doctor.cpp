@@ -14,6 +14,7 @@
 #include "session/ethercat_network.hpp"
 #include "session/open_network.hpp"
 #include "session/scan.hpp"
+#include "session/stretch.hpp"
 #include "traffic/link_findings.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/ring_findings.hpp"
@@ -24,6 +25,7 @@ namespace {
 using Level = Finding::Level;
 
 constexpr Duration kLookAgain = std::chrono::milliseconds(50);
+constexpr Duration kLongestRest = std::chrono::milliseconds(500);
 
 void add(std::vector<Finding>& to, std::vector<Finding> more) {
   std::move(more.begin(), more.end(), std::back_inserter(to));
@@ -35,9 +37,12 @@ bool is_own_request(const can::Frame& frame) {
 }
 
 /// Everything that is to be heard, until the time is over.
-Result<void> hear_all(can::Bus& bus, BusPicture& picture, TimePoint end,
-                      const std::function<bool()>& cancelled) {
-  while (bus.now() < end && !(cancelled && cancelled())) {
+Result<void> hear_all(can::Bus& bus, BusPicture& picture, const DoctorOptions& options) {
+  const auto begin = bus.now();
+  const auto end = begin + options.listen;
+  while (bus.now() < end && !(options.cancelled && options.cancelled())) {
+    if (options.told)
+      options.told(std::chrono::duration<double>(bus.now() - begin) / options.listen, begin, bus.now());
     const auto frame = bus.receive(std::min(end, bus.now() + kLookAgain));
     if (!frame) return fail(frame.error());
     if (*frame) picture.add(**frame, bus.arrived());
@@ -46,9 +51,11 @@ Result<void> hear_all(can::Bus& bus, BusPicture& picture, TimePoint end,
   return {};
 }
 
-/// What was heard while servoctl asked; what it sent itself is no sign of life.
+/// What was heard while servoctl asked; what it sent itself is no sign of life. On a bus that is never silent
+/// there is no last frame.
 Result<void> hear_rest(can::Bus& bus, BusPicture& picture) {
-  for (;;) {
+  const auto end = bus.now() + kLongestRest;
+  while (bus.now() < end) {
     const auto frame = bus.receive(bus.now());
     if (!frame) return fail(frame.error());
     if (!*frame) break;
@@ -111,8 +118,7 @@ Result<std::vector<Finding>> hear_link(can::LinkControl& link, LinkFacts& facts,
   const auto bus = link.listen();
   if (!bus) return fail(bus.error());
   BusPicture picture(facts.state.bitrate.value_or(0), (*bus)->now());
-  if (const auto heard = hear_all(**bus, picture, (*bus)->now() + options.listen, options.cancelled); !heard)
-    return fail(heard.error());
+  if (const auto heard = hear_all(**bus, picture, options); !heard) return fail(heard.error());
   std::vector<Finding> asked;
   if (options.active && !facts.state.listen_only) {
     auto answers = ask_over(link.name(), options);
@@ -146,6 +152,7 @@ Result<Findings> examine_ring(session::Session& session, session::EtherCatNetwor
   }
   facts.first = facts.last = *seen;
   facts.least = facts.most = seen->size();
+  const session::Stretch stretch(session, begin + options.listen);
   while (session.now() < begin + options.listen && !(options.cancelled && options.cancelled())) {
     const auto waited = session.wait([] { return false; }, session.now() + std::chrono::milliseconds(200));
     if (!waited) break;
@@ -199,6 +206,9 @@ Result<Findings> examine(session::Session& session, const DoctorOptions& options
   listener.on_frame = [&](const can::Frame& frame, TimePoint time) { picture.add(frame, time); };
   if (const auto heard = listen(session, options.listen, listener); !heard) return fail(heard.error());
   picture.end(session.now());
+  if (auto* const can = session.can())
+    if (auto about = can->bus().about(); !about.empty())
+      out.list.push_back({Level::ok, "adapter", std::move(about), {}, {}});
   add(out.list, bus_findings(picture, nullptr));
   if (!options.active) return out;
   auto asked = ask_all(session);

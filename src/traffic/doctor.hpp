@@ -14,6 +14,8 @@ struct DoctorOptions {
   Duration listen = std::chrono::seconds(2);
   bool active = false;                   ///< Asks all nodes for 1000h; else nothing is sent on CAN.
   std::function<bool()> cancelled = {};  ///< Ends the listening early, which is no error.
+  /// Told while it listens to an interface how much of that is done; may be empty.
+  std::function<void(double share, TimePoint begin, TimePoint now)> told = {};
 };
 
 /// A CAN interface of the kernel: what is set, and what is heard. Errc::bus when it goes away meanwhile.

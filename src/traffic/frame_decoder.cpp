@@ -11,6 +11,7 @@
 #include "canopen/nmt.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/word_bits.hpp"
+#include "report/told.hpp"
 #include "show/notice.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
@@ -56,7 +57,7 @@ const DecodedFrame& FrameDecoder::decode(const can::Frame& frame) {
   if (frame.error) {
     const auto report = can::parse_report(frame);
     out_.service = "controller";
-    out_.text = report ? can::text(*report) : "error frame, or report of the controller";
+    out_.text = word(report ? can::text(*report) : "error frame, or report of the controller");
   } else {
     decode_service(frame);
   }
@@ -70,7 +71,7 @@ void FrameDecoder::decode_service(const can::Frame& frame) {
   const auto* pdo = frame.remote ? nullptr : pdos_.find(canopen::can_id_of(frame));
   if (pdo != nullptr) return decode_pdo(frame, pdo->node, pdo);
   if (frame.extended) {
-    out_.text = "29-bit identifier";
+    out_.text = word("29-bit identifier");
     return;
   }
   if (frame.id == canopen::kNmt) return decode_nmt(frame);
@@ -81,45 +82,44 @@ void FrameDecoder::decode_service(const can::Frame& frame) {
   if (frame.id == canopen::kLssRequest || frame.id == canopen::kLssAnswer) return decode_lss(frame);
   if (frame.id > kFirstPdo && frame.id < canopen::kSdoAnswer && node != 0)
     return decode_pdo(frame, node, nullptr);
-  out_.text = fmt::format("identifier 0x{:03X}, {} bytes", frame.id, frame.size);
+  out_.text = report::told(options_.chinese, "identifier {}, {} bytes", fmt::format("0x{:03X}", frame.id),
+                           frame.size);
 }
 
 void FrameDecoder::decode_nmt(const can::Frame& frame) {
   out_.service = "nmt";
   const auto message = canopen::parse_nmt(frame);
+  if (options_.fields)
+    fields_.member("command", message ? std::optional(canopen::name(message->command)) : std::nullopt);
   if (!message) {
-    out_.text = "no NMT command of CiA 301";
+    out_.text = word("no NMT command of CiA 301");
     return;
   }
   if (message->node != 0) out_.node = message->node;
-  out_.text =
-      fmt::format("NMT {}{}", canopen::name(message->command), message->node == 0 ? ", all nodes" : "");
-  if (options_.fields) fields_.member("command", canopen::name(message->command));
+  const auto* const format = message->node == 0 ? "NMT {}, all nodes" : "NMT {}";
+  out_.text = report::told(options_.chinese, format, canopen::name(message->command));
 }
 
 void FrameDecoder::decode_sync(const can::Frame& frame) {
   out_.service = "sync";
   out_.text = "SYNC";
-  if (frame.remote || frame.size == 0) return;
-  out_.text += fmt::format(" {}", frame.data[0]);
-  if (options_.fields) fields_.member("counter", frame.data[0]);
+  const auto counter = frame.remote || frame.size == 0 ? std::nullopt : std::optional(frame.data[0]);
+  if (counter) out_.text += fmt::format(" {}", *counter);
+  if (options_.fields) fields_.member("counter", counter);
 }
 
 void FrameDecoder::decode_time(const can::Frame& frame) {
   out_.service = "time";
-  if (frame.remote || frame.size < 6) {
-    out_.text = "no TIME of CiA 301";
-    return;
-  }
-  const auto time = time_of_day(frame.payload());
-  out_.text = "TIME " + time;
-  if (options_.fields) fields_.member("tells", time);
+  const bool right = !frame.remote && frame.size >= 6;
+  const auto time = right ? time_of_day(frame.payload()) : std::string();
+  out_.text = right ? "TIME " + time : std::string(word("no TIME of CiA 301"));
+  if (options_.fields) fields_.text_or_null("tells", time);
 }
 
 void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
   out_.service = "emcy";
   out_.node = emergency.node;
-  out_.text = show::event_text({{}, emergency.node, emergency}, options_.profile, options_.chinese);
+  out_.text = sentence(show::event_text({{}, emergency.node, emergency}, options_.profile, options_.chinese));
   if (!options_.fields) return;
   fields_.member("code", emergency.code);
   fields_.member("error_register", emergency.error_register);
@@ -127,7 +127,7 @@ void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
 
 void FrameDecoder::decode_lss(const can::Frame& frame) {
   out_.service = "lss";
-  out_.text = lss_text(frame);
+  out_.text = sentence(lss_text(frame));
   if (options_.fields) fields_.member("from", frame.id == canopen::kLssRequest ? "master" : "slave");
 }
 
@@ -135,22 +135,24 @@ void FrameDecoder::decode_lss(const can::Frame& frame) {
 void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const show::PdoView* view) {
   out_.service = "pdo";
   out_.node = node;
+  if (frame.remote || view == nullptr) leave_out({"pdo", "mapping", "values"});
   if (frame.remote) {
-    out_.text = fmt::format("PDO 0x{:03X} requested by a remote frame", frame.id);
+    out_.text = report::told(options_.chinese, "PDO {} requested by a remote frame",
+                             fmt::format("0x{:03X}", frame.id));
     return;
   }
   const auto data = frame.payload();
   if (view == nullptr) {
     const bool receive = (frame.id & 0x80U) == 0;
     const auto number = static_cast<std::uint16_t>((frame.id - (receive ? 0x180U : 0x080U)) >> 8U);
-    out_.text =
-        canopen::name(receive ? canopen::PdoDirection::receive : canopen::PdoDirection::transmit, number) +
-        " " + to_hex(data) + " (mapping not known)";
+    const auto direction = receive ? canopen::PdoDirection::receive : canopen::PdoDirection::transmit;
+    out_.text = canopen::name(direction, number) + " " +
+                report::told(options_.chinese, "{} (mapping not known)", to_hex(data));
     return;
   }
   out_.text += view->name;
   const bool assumed = view->assumed && shows_values(*view, data);
-  if (assumed) out_.text += options_.chinese ? "（出厂映射）" : " (factory mapping)";
+  if (assumed) out_.text += word(" (factory mapping)");
   out_.text += ' ';
   show::append_values(*view, data, options_.chinese, out_.text, modes_[node % modes_.size()]);
   for (const auto& field : view->fields) {
@@ -159,7 +161,7 @@ void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const 
   }
   if (!options_.fields) return;
   fields_.member("pdo", view->name);
-  if (assumed) fields_.member("mapping", "factory");
+  fields_.text_or_null("mapping", assumed ? "factory" : "");
   fields_.key("values");
   show::write_values(*view, data, fields_);
 }
@@ -168,17 +170,17 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
   out_.node = node_of(frame, canopen::kErrorControl);
   if (frame.remote) {
     out_.service = "guarding";
-    out_.text = "node guarding request";
+    out_.text = word("node guarding request");
     return;
   }
   const auto message = canopen::parse_error_control(frame);
   if (!message) {
-    out_.text = "no heartbeat of CiA 301";
+    out_.text = word("no heartbeat of CiA 301");
     return;
   }
   if (message->boot_up) {
     out_.service = "boot-up";
-    out_.text = "boot-up";
+    out_.text = word("boot-up");
     pdos_.forget(*out_.node);
     modes_[*out_.node] = 0;
     emergency_ids_.on_boot_up(*out_.node);
@@ -186,11 +188,21 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
   }
   const bool toggle = (frame.data[0] & 0x80U) != 0;
   out_.service = "heartbeat";
-  out_.text = canopen::name(message->state);
-  if (toggle) out_.text += " (answer to node guarding)";
+  const auto state = word(canopen::name(message->state));
+  out_.text =
+      toggle ? report::told(options_.chinese, "{} (answer to node guarding)", state) : std::string(state);
   if (!options_.fields) return;
   fields_.member("state", canopen::name(message->state));
   fields_.member("toggle", toggle);
+}
+
+std::string_view FrameDecoder::word(std::string_view english) const {
+  return options_.chinese ? report::chinese_word(english) : english;
+}
+
+/// Of frames that seldom come: it takes its time.
+std::string FrameDecoder::sentence(const std::string& english) const {
+  return options_.chinese ? report::in_chinese(english) : english;
 }
 
 std::string FrameDecoder::name_of(const drive::Target& target) const {
@@ -209,12 +221,13 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   out_.node = node;
   drive::Target target;
   if (step.object) target = drive::target_at(options_.profile, *step.object);
-  out_.text = step_text(step, step.object ? name_of(target) : "of a transfer begun before",
-                        step.kind == Step::abort ? abort_words_of(step) : std::string());
+  out_.text = step_text(step, step.object ? name_of(target) : std::string(word("of a transfer begun before")),
+                        step.kind == Step::abort ? std::string(word(abort_words_of(step))) : std::string(),
+                        options_.chinese);
   if (step.object) out_.objects.push_back(*step.object);
   if (options_.fields) add_sdo_fields(step, target);
-  if (step.object && step.data) add_sdo_value(*step.data, target);
-  if (step.announced) out_.text += fmt::format(", {} bytes", *step.announced);
+  add_sdo_value(step, target);
+  if (step.announced) out_.text += report::told(options_.chinese, ", {} bytes", *step.announced);
   if (options_.fields) end_sdo_fields(step);
   learn(step);
   learn_mode(step);
@@ -224,28 +237,38 @@ std::string FrameDecoder::abort_words_of(const SdoStep& step) const {
   return show::abort_words(options_.profile, options_.chinese, step.abort_code);
 }
 
+/// Keys of the service that this frame does not tell.
+void FrameDecoder::leave_out(std::initializer_list<std::string_view> keys) {
+  if (!options_.fields) return;
+  for (const auto key : keys) {
+    fields_.key(key);
+    fields_.null();
+  }
+}
+
 void FrameDecoder::add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target) {
   fields_.member("step", step_name(step.kind));
   fields_.member("from", step.from_client ? "master" : "node");
-  if (step.block) fields_.member("block", true);
-  if (!step.object) return;
-  fields_.member("index", step.object->index);
-  fields_.member("sub", step.object->sub);
+  fields_.member("block", step.block);
+  fields_.member("index", step.object ? std::optional(step.object->index) : std::nullopt);
+  fields_.member("sub", step.object ? std::optional(step.object->sub) : std::nullopt);
   fields_.text_or_null("name", target.label());
 }
 
 /// What stands behind the value.
 void FrameDecoder::end_sdo_fields(const canopen::SdoStep& step) {
-  if (step.announced) fields_.member("announced", *step.announced);
-  if (step.kind != Step::abort) return;
+  fields_.member("announced", step.announced);
   fields_.key("abort");
+  if (step.kind != Step::abort) return fields_.null();
   fields_.begin_record();
   fields_.member("code", fmt::format("0x{:08X}", step.abort_code));
   fields_.member("text", abort_words_of(step));
   fields_.end_record();
 }
 
-void FrameDecoder::add_sdo_value(const Bytes& data, const drive::Target& target) {
+void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Target& target) {
+  if (!step.object || !step.data) return leave_out({"value", "unit", "label", "bytes"});
+  const auto& data = *step.data;
   const auto value = show::decode_value({*out_.node, target, {}, Bytes{}}, data);
   out_.text += " = " + value.text;
   const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
@@ -263,8 +286,9 @@ std::string FrameDecoder::words_of(const Bytes& data, ObjectAddress object) cons
   if (data.size() != 2) return {};
   const auto word = static_cast<std::uint16_t>(load_le(data));
   const auto mode = modes_[*out_.node];
-  if (object == objects::kStatusword) return drive::statusword_words(word, mode, options_.chinese);
-  return object == objects::kControlword ? drive::controlword_words(word, mode) : std::string();
+  const auto language = options_.chinese ? report::chinese_word : nullptr;
+  if (object == objects::kStatusword) return drive::statusword_words(word, mode, language);
+  return object == objects::kControlword ? drive::controlword_words(word, mode, language) : std::string();
 }
 
 }  // namespace servoctl::traffic

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -60,13 +61,16 @@ class FrameDecoder {
   void decode_error_control(const can::Frame& frame);
   void decode_sdo(const can::Frame& frame);
   void add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target);
-  void add_sdo_value(const Bytes& data, const drive::Target& target);
+  void add_sdo_value(const canopen::SdoStep& step, const drive::Target& target);
+  void leave_out(std::initializer_list<std::string_view> keys);
   std::string abort_words_of(const canopen::SdoStep& step) const;
   void end_sdo_fields(const canopen::SdoStep& step);
   void learn(const canopen::SdoStep& step);
   void learn_mode(const canopen::SdoStep& step);
   std::string words_of(const Bytes& data, ObjectAddress object) const;
   std::string name_of(const drive::Target& target) const;
+  std::string_view word(std::string_view english) const;
+  std::string sentence(const std::string& english) const;
 
   /// A write whose acknowledge has not come.
   struct Pending {

@@ -6,6 +6,7 @@
 
 #include "base/text.hpp"
 #include "drive/naming.hpp"
+#include "report/catalogue.hpp"
 
 namespace servoctl::traffic {
 namespace {
@@ -46,7 +47,8 @@ FrameLog::FrameLog(show::Desk& desk, FrameFilter filter, bool raw)
     : filter_(std::move(filter)),
       raw_(raw),
       writer_(desk),
-      decoder_({desk.profile, desk.chinese, writer_.wants_records()}) {}
+      decoder_({desk.profile, desk.chinese, writer_.wants_records()}),
+      chinese_(desk.chinese) {}
 
 void FrameLog::begin_line(Duration time) {
   const auto since = (time - begin_.value_or(time)).count();
@@ -112,7 +114,7 @@ void FrameLog::remark(Duration time, std::string_view service, std::optional<std
   begin_line(time);
   if (raw_) line_.append(kFrameWidth + 1, ' ');
   add_node(node);
-  line_ += text;
+  line_ += chinese_ ? report::in_chinese(text) : std::string(text);
   writer_.add_line(line_);
 }
 

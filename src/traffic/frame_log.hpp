@@ -54,6 +54,7 @@ class FrameLog {
   bool raw_;
   show::SampleWriter writer_;
   FrameDecoder decoder_;
+  bool chinese_;
   std::size_t count_ = 0;
   std::map<std::string_view, std::size_t> services_;
   std::optional<Duration> begin_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "session/can_network.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::traffic {
 namespace {
@@ -13,7 +14,8 @@ constexpr Duration kSlice = std::chrono::milliseconds(50);
 }  // namespace
 
 Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener) {
-  const auto end = length ? session.now() + *length : kNever;
+  const session::Stretch stretch(session, length ? session.now() + *length : kNever);
+  const auto end = stretch.end();
   auto shown = session.now();
   for (;;) {
     const auto due = listener.next ? listener.next() : kNever;

@@ -2,12 +2,30 @@
 
 #include <fmt/format.h>
 
+
 #include "base/file.hpp"
+#include "base/text.hpp"
 
 namespace servoctl::traffic {
 namespace {
 
 constexpr std::uintmax_t kMaxFile = std::uintmax_t{1} << 30U;
+
+/// What is told of the file, how many, and where the first is.
+struct StrayWords {
+  std::string_view no_frame;
+  std::string_view no_frames;
+  std::string_view unsuited;
+  std::string_view several_unsuited;
+};
+constexpr StrayWords kLines{"{0}: 1 line is no frame and left out, the first is line {2}",
+                            "{0}: {1} lines are no frame and left out, the first is line {2}",
+                            "{0}: 1 line left out: CAN FD or another bus system",
+                            "{0}: {1} lines left out: CAN FD or another bus system"};
+constexpr StrayWords kRecords{"{0}: 1 record is no frame and left out, the first is record {2}",
+                              "{0}: {1} records are no frame and left out, the first is record {2}",
+                              "{0}: 1 record left out: CAN FD or another bus system",
+                              "{0}: {1} records left out: CAN FD or another bus system"};
 
 }  // namespace
 
@@ -15,16 +33,13 @@ Result<std::string> read_recording(std::string_view path) { return read_file(std
 
 std::vector<std::string> notices(std::string_view path, const Strays& strays) {
   std::vector<std::string> out;
-  const std::string_view unit = strays.records ? "record" : "line";
-  const auto count = [&](std::size_t number) {
-    return fmt::format("{} {}{}", number, unit, number == 1 ? "" : "s");
+  const auto& words = strays.records ? kRecords : kLines;
+  const auto tell = [&](std::size_t count, std::string_view one, std::string_view several) {
+    if (count > 0)
+      out.push_back(fmt::format(fmt::runtime(count == 1 ? one : several), path, count, strays.first));
   };
-  if (strays.unknown > 0)
-    out.push_back(fmt::format("{}: {} no frame and left out, the first is {} {}", path,
-                              count(strays.unknown) + (strays.unknown == 1 ? " is" : " are"), unit,
-                              strays.first));
-  if (strays.unsuited > 0)
-    out.push_back(fmt::format("{}: {} left out: CAN FD or another bus system", path, count(strays.unsuited)));
+  tell(strays.unknown, words.no_frame, words.no_frames);
+  tell(strays.unsuited, words.unsuited, words.several_unsuited);
   return out;
 }
 
@@ -33,6 +48,25 @@ Result<void> check_damage(std::string_view path, const Strays& strays) {
   return fail(Errc::file,
               fmt::format("{} is damaged at byte {}: {}", path, strays.damage->offset, strays.damage->what),
               "was it copied before it was complete? What stands in front of that byte is read");
+}
+
+Strays for_each_frame_of(std::string_view recording, std::string_view channel,
+                         const can::TakeLogFrame& take) {
+  return for_each_frame(recording, [&](const can::LogFrame& line) {
+    return (!channel.empty() && line.interface_name != channel) || take(line);
+  });
+}
+
+Result<void> check_channel(std::string_view path, std::string_view recording, std::string_view channel) {
+  const auto frames = can::frames_of_buses(recording);
+  if (channel.empty() ? frames.size() < 2 : frames.count(std::string(channel)) > 0) return {};
+  const auto list = can::list_of(frames);
+  if (!channel.empty())
+    return fail(Errc::usage, fmt::format("{} has no frame of {}", path, channel),
+                fmt::format("it has frames of {}", list));
+  return fail(Errc::usage, fmt::format("{} has frames of several buses: {}", path, list),
+              fmt::format("sent on one bus they would mean something else: name one, `--channel {}`",
+                          frames.begin()->first));
 }
 
 tl::unexpected<Error> no_frames(std::string_view path) {

@@ -22,6 +22,13 @@ std::vector<std::string> notices(std::string_view path, const Strays& strays);
 /// Errc::file for a recording that is damaged; nothing for any other.
 Result<void> check_damage(std::string_view path, const Strays& strays);
 
+/// Whether a recording is one of a single bus, or `channel` names one of its buses, as `decode` shows them.
+/// Errc::usage otherwise, with those that there are. Frames of several buses mean nothing on one.
+Result<void> check_channel(std::string_view path, std::string_view recording, std::string_view channel);
+
+/// The frames of one bus of a recording; of all where `channel` is empty.
+Strays for_each_frame_of(std::string_view recording, std::string_view channel, const can::TakeLogFrame& take);
+
 tl::unexpected<Error> no_frames(std::string_view path);
 
 }  // namespace servoctl::traffic

@@ -27,9 +27,9 @@ constexpr std::size_t kMostKinds = 6;
 bool is_of_canopen(const can::Frame& frame) { return !frame.error && !frame.extended; }
 
 /// Every node-ID the CAN-IDs of the recording speak of, by the pre-defined connection set.
-std::set<std::uint8_t> nodes_in(std::string_view recording) {
+std::set<std::uint8_t> nodes_in(std::string_view recording, std::string_view channel) {
   std::set<std::uint8_t> out;
-  (void)for_each_frame(recording, [&](const can::LogFrame& line) {
+  (void)for_each_frame_of(recording, channel, [&](const can::LogFrame& line) {
     const auto& frame = line.frame;
     if (!is_of_canopen(frame) || frame.id > canopen::kErrorControl + canopen::kLastNode) return true;
     const auto nmt = canopen::parse_nmt(frame);
@@ -115,7 +115,7 @@ class Choice {
       if (!looks_like_tpdo(frame)) return "RPDO";
       return drives_->pdos.empty() ? "PDO of unknown direction" : "";
     }
-    return write && can_move(*write) ? "write of " + name_of(*write) : "";
+    return write && can_move(*write) ? fmt::format("write of {}", name_of(*write)) : "";
   }
 
   bool can_move(ObjectAddress object) const {
@@ -134,7 +134,8 @@ class Choice {
       return reset ? fmt::format("NMT {}", canopen::name(message->command)) : "";
     }
     if (!write || !lasts(*write)) return "";
-    return (write->index == objects::kStoreIndex ? "store by " : "write of ") + name_of(*write);
+    const bool stores = write->index == objects::kStoreIndex;
+    return fmt::format(fmt::runtime(stores ? "store by {}" : "write of {}"), name_of(*write));
   }
 
   bool lasts(ObjectAddress object) const {
@@ -192,10 +193,10 @@ std::size_t ReplayPlan::dangerous() const {
                          [](std::size_t sum, const auto& kind) { return sum + kind.second; });
 }
 
-Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording) {
+Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording, std::string_view channel) {
   ReplayDrives out;
   std::vector<session::SdoRequest> questions;
-  for (const auto node : nodes_in(recording))
+  for (const auto node : nodes_in(recording, channel))
     questions.push_back({.node = node, .object = objects::kStatusword});
   const auto answers = desk.session->transfer(questions);
   std::vector<std::uint8_t> present;
@@ -222,7 +223,7 @@ ReplayPlan plan_replay(const show::Desk& desk, const ReplayChoice& wanted, std::
                        const ReplayDrives& drives) {
   Choice choice(desk, wanted, drives);
   std::size_t extended = 0;
-  auto strays = for_each_frame(recording, [&](const can::LogFrame& line) {
+  auto strays = for_each_frame_of(recording, wanted.channel, [&](const can::LogFrame& line) {
     if (is_of_canopen(line.frame)) choice.add(line);
     extended += line.frame.extended && !line.frame.error;
     return true;
@@ -237,7 +238,7 @@ std::string kinds_text(const FrameKinds& kinds) {
   std::string out;
   std::size_t told = 0;
   for (const auto& [kind, count] : kinds) {
-    if (told == kMostKinds) return out + fmt::format(" and {} other kinds", kinds.size() - told);
+    if (told == kMostKinds) return out + fmt::format(", and {} other kinds", kinds.size() - told);
     out += fmt::format("{}{} {}", told++ == 0 ? "" : ", ", count, kind);
   }
   return out;

@@ -21,8 +21,9 @@ struct ReplayDrives {
   std::map<std::uint32_t, std::set<std::uint8_t>> listen;  ///< By CAN-ID, those that have an RPDO there.
 };
 
-/// Asks the nodes of the recording whether they are there, and what their PDOs are. Errc::bus or interrupted.
-Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording);
+/// Asks the nodes of the recording, or of one of its buses, whether they are there, and what their PDOs are.
+/// Errc::bus or interrupted.
+Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording, std::string_view channel = {});
 
 /// Kinds of frames in words (`NMT start`, `write of Controlword`), and how many there are of each.
 using FrameKinds = std::map<std::string, std::size_t>;
@@ -46,6 +47,7 @@ struct ReplayPlan {
 struct ReplayChoice {
   std::span<const std::string> only;  ///< Services, of kServices; empty: all.
   bool of_master = false;             ///< Only what a master sends.
+  std::string_view channel = {};      ///< Of this bus of the recording; empty: of all.
 };
 
 /// Chooses the frames; reports of the controller and 29-bit identifiers are none

@@ -4,6 +4,7 @@
 
 #include "canopen/cob_id.hpp"
 #include "session/hearing.hpp"
+#include "session/stretch.hpp"
 
 namespace servoctl::traffic {
 namespace {
@@ -45,12 +46,14 @@ Result<void> ReplayRun::run(std::span<const can::LogFrame> frames, double speed)
 
 Result<void> ReplayRun::send_all(std::span<const can::LogFrame> frames, double speed) {
   auto due = session_->now();
+  session::Stretch stretch(*session_, kNever);
   while (sent_ < frames.size()) {
     const auto waited = session_->wait([] { return false; }, due);
     if (!waited) return fail(waited.error());
     if (const auto done = session_->can()->send(frames[sent_].frame); !done) return done;
     on_sent(frames[sent_].frame);
     ++sent_;
+    stretch.set_share(static_cast<double>(sent_) / static_cast<double>(frames.size()));
     if (sent_ == frames.size()) break;
     const auto gap = std::max(frames[sent_].time - frames[sent_ - 1].time, Duration::zero());
     due += std::chrono::duration_cast<Duration>(gap / speed);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/number.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::traffic {
@@ -59,8 +60,8 @@ void add_count_of_slaves(std::vector<Finding>& out, const RingFacts& facts) {
     out.push_back(
         {Level::ok,
          "slaves",
-         fmt::format("{} slave{} on the ring all the time ({:.3g} s)", facts.most, facts.most == 1 ? "" : "s",
-                     std::chrono::duration<double>(facts.length).count()),
+         fmt::format("{} slave{} on the ring all the time ({} s)", facts.most, facts.most == 1 ? "" : "s",
+                     plain_number(std::chrono::duration<double>(facts.length).count(), 3)),
          {},
          {}});
     return;

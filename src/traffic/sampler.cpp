@@ -145,6 +145,15 @@ Result<void> check_number(const Channel& channel, ByteSpan bytes) {
   return fail(no_number(channel, "it holds something else"));
 }
 
+const Error* end_of_looks(std::span<const Sample> samples) {
+  for (const auto& sample : samples) {
+    if (sample.bytes) continue;
+    const auto code = sample.bytes.error().code;
+    if (code == Errc::bus || code == Errc::interrupted) return &sample.bytes.error();
+  }
+  return nullptr;
+}
+
 std::vector<Error> failures_of(std::span<const Sample> last) {
   std::vector<Error> out;
   for (const auto& sample : last) {
@@ -220,7 +229,7 @@ std::string series_csv(std::span<const Series> series) {
     for (std::size_t k = 0; k < series[i].seconds.size(); ++k) {
       auto& cells = lines[series[i].seconds[k]];
       cells.resize(series.size());
-      cells[i] = fmt::format("{:.12g}", series[i].values[k]);
+      cells[i] = plain_number(series[i].values[k], 12);
     }
   for (const auto& [seconds, cells] : lines) {
     out += fmt::format("{:.6f}", seconds);

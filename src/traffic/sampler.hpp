@@ -67,6 +67,9 @@ Result<void> check_number(const Channel& channel);
 /// The same of what was read, where the dictionary does not tell.
 Result<void> check_number(const Channel& channel, ByteSpan bytes);
 
+/// Why no further look is worth while: the bus was lost, or somebody interrupts; null otherwise.
+const Error* end_of_looks(std::span<const Sample> samples);
+
 /// The reads that fail still: of each node the first error, for `desk.errors`.
 std::vector<Error> failures_of(std::span<const Sample> last);
 

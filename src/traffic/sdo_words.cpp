@@ -1,6 +1,6 @@
 #include "traffic/sdo_words.hpp"
 
-#include <fmt/format.h>
+#include "report/told.hpp"
 
 namespace servoctl::traffic {
 
@@ -21,24 +21,25 @@ std::string_view step_name(SdoStep::Kind kind) {
   return "unknown";
 }
 
-std::string step_text(const SdoStep& step, const std::string& object, std::string_view abort) {
+std::string step_text(const SdoStep& step, const std::string& object, std::string_view abort, bool chinese) {
   switch (step.kind) {
-    case SdoStep::Kind::read: return "read " + object;
-    case SdoStep::Kind::write: return "write " + object;
-    case SdoStep::Kind::answer: return "answer " + object;
-    case SdoStep::Kind::acknowledge: return "taken " + object;
+    case SdoStep::Kind::read: return report::told(chinese, "read {}", object);
+    case SdoStep::Kind::write: return report::told(chinese, "write {}", object);
+    case SdoStep::Kind::answer: return report::told(chinese, "answer {}", object);
+    case SdoStep::Kind::acknowledge: return report::told(chinese, "taken {}", object);
     case SdoStep::Kind::segment:
     case SdoStep::Kind::end:
-      if (step.data) return (step.from_client ? "write " : "answer ") + object;
-      if (step.kind == SdoStep::Kind::end) return "end " + object;
-      return fmt::format("segment {}, {} bytes so far", object, step.received);
-    case SdoStep::Kind::next: return "go on " + object;
+      if (step.data) return report::told(chinese, step.from_client ? "write {}" : "answer {}", object);
+      if (step.kind == SdoStep::Kind::end) return report::told(chinese, "end {}", object);
+      return report::told(chinese, "segment {}, {} bytes so far", object, step.received);
+    case SdoStep::Kind::next: return report::told(chinese, "go on {}", object);
     case SdoStep::Kind::abort:
-      return fmt::format("abort {} by the {}: 0x{:08X} {}", object, step.from_client ? "master" : "node",
-                         step.abort_code, abort);
+      return report::told(chinese,
+                          step.from_client ? "abort {} by the master: {} {}" : "abort {} by the node: {} {}",
+                          object, fmt::format("0x{:08X}", step.abort_code), abort);
     case SdoStep::Kind::unknown: break;
   }
-  return "no SDO of CiA 301";
+  return std::string(chinese ? report::chinese_word("no SDO of CiA 301") : "no SDO of CiA 301");
 }
 
 }  // namespace servoctl::traffic

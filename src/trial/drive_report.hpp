@@ -22,18 +22,36 @@ struct ReportPart {
 /// All that is told of one drive.
 struct DriveReport {
   std::uint8_t node = 0;
-  std::string title;  ///< `Node 1: GSD600`
-  std::vector<ReportPart> parts;
-  std::vector<report::TestResult> tests;  ///< The test of the communication, then earlier ones.
+  std::string axis;      ///< Its name in the cabinet file; empty where it has none.
+  std::string bus;       ///< URL.
+  std::string bus_name;  ///< In the cabinet file; else the URL.
+  std::string family;    ///< As `-d` takes it.
+  std::string title;     ///< `feeder (node 1)`
+  std::vector<ReportPart> parts = {};
+  std::vector<report::TestResult> tests = {};  ///< The test of the communication, then earlier ones.
+};
+
+/// What is told of one bus.
+struct BusReport {
+  std::string url;
+  std::string name;    ///< In the cabinet file; else the URL.
+  report::Value link;  ///< What the kernel knows of the interface; null for other buses.
+  ReportPart found;    ///< Who is there.
 };
 
 struct Report {
   ReportCover cover;    ///< With the title.
   report::Record head;  ///< As report_head() makes it.
-  ReportPart bus;       ///< Who is there.
-  report::Value link;   ///< What the kernel knows of the interface; null for other buses.
+  std::vector<BusReport> buses;
   std::vector<DriveReport> drives;
+
+  /// Whether the drives are of several buses, or families: each page says its own then.
+  bool is_of_several(std::string DriveReport::*what) const;
 };
+
+/// The parts of a drive in JSON, whether it answered or not.
+inline constexpr std::string_view kPartsOfDrive[] = {"identity", "state", "faults",
+                                                     "settings", "pdos",  "cabinet"};
 
 /// As a page, in the language of the desk.
 std::string report_page(const show::Desk& desk, const Report& report);

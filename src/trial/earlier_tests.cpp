@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
-#include <iterator>
 
 #include "base/file.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
+#include "session/open_bus.hpp"
 #include "show/identity.hpp"
+#include "trial/figures.hpp"
 
 namespace servoctl::trial {
 namespace {
@@ -25,6 +26,13 @@ constexpr std::string_view kTestCommand = "test ";
 std::string text(const Value* value) {
   const auto* found = value == nullptr ? nullptr : std::get_if<std::string>(&value->data());
   return found == nullptr ? std::string() : *found;
+}
+
+double number_of(const Value* value) {
+  if (value == nullptr) return 0;
+  if (const auto* real = std::get_if<double>(&value->data())) return *real;
+  const auto* whole = std::get_if<std::uint64_t>(&value->data());
+  return whole == nullptr ? 0 : static_cast<double>(*whole);
 }
 
 /// The relations a criterion may have, which outlive the file.
@@ -51,7 +59,7 @@ std::optional<Criterion> criterion_of(const Value& value) {
   return out;
 }
 
-std::optional<TestResult> test_of(const Value& value) {
+std::optional<TestResult> test_of(const show::Desk& desk, const Value& value) {
   TestResult out;
   out.test = text(find(value, "test"));
   const auto* node = find(value, "node");
@@ -74,6 +82,8 @@ std::optional<TestResult> test_of(const Value& value) {
     if (!plot) return std::nullopt;
     out.samples = std::move(*plot);
   }
+  out.seconds = number_of(find(value, "seconds"));
+  out.figures = figures_of(desk, out, value);
   return out;
 }
 
@@ -108,15 +118,18 @@ std::optional<TestResult> broken_off(const Value& document, const std::vector<Te
   return out;
 }
 
-Result<void> add_tests(const Value& document, std::string_view file, std::vector<TestResult>& out) {
+Result<void> add_tests(const show::Desk& desk, const Value& document, std::string_view file,
+                       std::vector<EarlierTest>& out) {
   const auto* result = find(document, "result");
   const auto* list = result == nullptr ? nullptr : std::get_if<List>(&result->data());
   if (list == nullptr || !text(find(document, "command")).starts_with(kTestCommand)) return no_tests(file);
   std::vector<TestResult> tests;
+  std::vector<std::string> axes;
   for (const auto& one : *list) {
-    auto test = test_of(one);
+    auto test = test_of(desk, one);
     if (!test) return no_tests(file);
     tests.push_back(std::move(*test));
+    axes.push_back(text(find(one, "axis")));
   }
   if (auto last = broken_off(document, tests)) {
     if (last->node == 0)
@@ -124,8 +137,11 @@ Result<void> add_tests(const Value& document, std::string_view file, std::vector
                   fmt::format("{}: the test did not run: {}", file, text(&last->criteria.front().figure)),
                   "run it again, or leave this --tests out");
     tests.push_back(std::move(*last));
+    auto axis = text(find(*find(document, "error"), "axis"));
+    axes.push_back(axis.empty() && !axes.empty() ? axes.back() : std::move(axis));
   }
-  std::move(tests.begin(), tests.end(), std::back_inserter(out));
+  const auto bus = text(find(document, "bus"));
+  for (std::size_t i = 0; i < tests.size(); ++i) out.push_back({std::move(tests[i]), axes[i], bus});
   return {};
 }
 
@@ -155,23 +171,30 @@ Error other_drive(const TestResult& test, const std::string& what) {
 
 }  // namespace
 
-Result<std::vector<TestResult>> read_tests(const std::filesystem::path& file) {
+Result<std::vector<EarlierTest>> read_tests(const show::Desk& desk, const std::filesystem::path& file) {
   const auto content = read_file(file);
   if (!content) return fail(content.error());
-  std::vector<TestResult> out;
+  std::vector<EarlierTest> out;
   const auto whole = report::parse_json(*content, file.string());
   if (whole) {
-    if (const auto added = add_tests(*whole, file.string(), out); !added) return fail(added.error());
+    if (const auto added = add_tests(desk, *whole, file.string(), out); !added) return fail(added.error());
     return out;
   }
   for (const auto line : split(std::string_view(*content), '\n')) {
     if (trim(line).empty()) continue;
     const auto document = report::parse_json(line, file.string());
     if (!document) return fail(whole.error());
-    if (const auto added = add_tests(*document, file.string(), out); !added) return fail(added.error());
+    if (const auto added = add_tests(desk, *document, file.string(), out); !added) return fail(added.error());
   }
   if (out.empty()) return no_tests(file.string());
   return out;
+}
+
+bool is_of(const EarlierTest& test, const TestedDrive& drive) {
+  if (!test.axis.empty() && !drive.axis.empty()) return test.axis == drive.axis;
+  const bool same_bus =
+      drive.bus.empty() || session::canonical_url(test.bus) == session::canonical_url(drive.bus);
+  return test.result.node == drive.node && same_bus;
 }
 
 Result<void> check_tested(show::Desk& desk, const std::vector<TestResult>& tests) {

@@ -4,6 +4,7 @@
 
 #include "base/duration.hpp"
 #include "drive/standard_objects.hpp"
+#include "trial/figures.hpp"
 #include "trial/motion_trial.hpp"
 #include "trial/verdict.hpp"
 
@@ -43,24 +44,20 @@ class Homings {
   TestResult judged(const motion::MotionReport& done) const {
     TestResult out;
     out.test = "home";
-    out.criteria.push_back(report::at_least("found", say("successful homings", "成功回零次数"),
+    out.criteria.push_back(report::at_least("found", say("successful homings"),
                                             static_cast<double>(found_.size()), test_->repeat));
     judge_motion(*desk_, done, out);
     std::string unit;
     for (const auto& series : done.series)
       if (series.name == motion::name(Signal::position)) unit = series.unit;
-    judge_spread("spread", say("spread of the final position", "停止位置的离散"), &Found::position, unit,
-                 out);
-    judge_spread("encoder_spread", say("spread of home against the encoder", "原点相对编码器的离散"),
-                 &Found::encoder, unit, out);
-    out.figures.push_back({"homings", table(unit), report::Show::everywhere, say("homings", "各次回零")});
+    judge_spread("spread", say("spread of the final position"), &Found::position, unit, out);
+    judge_spread("encoder_spread", say("spread of home against the encoder"), &Found::encoder, unit, out);
+    out.figures.push_back(homings_figure(*desk_, rows(), unit));
     return out;
   }
 
  private:
-  std::string say(std::string_view english, std::string_view chinese) const {
-    return trial::say(*desk_, english, chinese);
-  }
+  std::string say(std::string_view english) const { return trial::say(*desk_, english); }
 
   Found look(motion::Motion& motion, const motion::MotionReport& done, Duration time) const {
     Found out;
@@ -88,9 +85,8 @@ class Homings {
     if (values.size() < 2) {
       out.criteria.push_back(report::skipped(
           std::move(id), std::move(name),
-          found_.size() < 2 ? say("fewer than two homings", "回零少于两次")
-                            : say("not available in the position unit; --encoder COUNTS may help",
-                                  "驱动器未以位置单位提供该数据，可试 --encoder")));
+          found_.size() < 2 ? say("fewer than two homings")
+                            : say("not available in the position unit; --encoder COUNTS may help")));
       return;
     }
     const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
@@ -98,20 +94,15 @@ class Homings {
         report::at_most(std::move(id), std::move(name), *greatest - *least, test_->spread, unit));
   }
 
-  report::Value table(const std::string& unit) const {
-    report::Table table;
-    const auto of_unit = unit.empty() ? unit : " (" + unit + ")";
-    table.columns = {{"run", say("run", "次")},
-                     {"seconds", say("seconds", "秒")},
-                     {"position", say("position", "位置") + of_unit},
-                     {"encoder", say("encoder", "编码器") + of_unit}};
-    for (std::size_t i = 0; i < found_.size(); ++i) {
+  std::vector<report::List> rows() const {
+    std::vector<report::List> out;
+    for (const auto& found : found_) {
       const auto number = [](std::optional<double> value) {
         return value ? report::Value(*value) : report::Value();
       };
-      table.rows.push_back({i + 1, found_[i].seconds, number(found_[i].position), number(found_[i].encoder)});
+      out.push_back({out.size() + 1, found.seconds, number(found.position), number(found.encoder)});
     }
-    return table;
+    return out;
   }
 
   const show::Desk* desk_;

@@ -6,6 +6,8 @@
 
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/stretch.hpp"
+#include "trial/figures.hpp"
 #include "trial/verdict.hpp"
 
 namespace servoctl::trial {
@@ -13,7 +15,6 @@ namespace {
 
 using report::Criterion;
 using report::Record;
-using report::Show;
 using report::TestResult;
 
 constexpr unsigned kBits = 32;
@@ -35,8 +36,9 @@ class InputNames {
   }
   std::string name(unsigned bit) const {
     const auto function = function_of(bit);
-    return function ? say(*desk_, kIds[*function], kNamesZh[*function])
-                    : say(*desk_, fmt::format("bit{}", bit), fmt::format("位 {}", bit));
+    // In English as they are typed.
+    if (!desk_->speaks_chinese()) return id(bit);
+    return say(*desk_, function ? std::string(kNames[*function]) : fmt::format("bit {}", bit));
   }
   Result<unsigned> parse(std::string_view word) const {
     std::vector<std::string> words;
@@ -51,7 +53,7 @@ class InputNames {
 
  private:
   static constexpr std::array<std::string_view, 3> kIds{"negative-limit", "positive-limit", "home"};
-  static constexpr std::array<std::string_view, 3> kNamesZh{"负限位", "正限位", "原点"};
+  static constexpr std::array<std::string_view, 3> kNames{"negative limit", "positive limit", "home switch"};
 
   std::optional<std::size_t> function_of(unsigned bit) const {
     for (std::size_t i = 0; i < std::min(rules_.inputs.size(), kIds.size()); ++i)
@@ -72,6 +74,7 @@ class InputWatch {
   Result<TestResult> run(Duration length) {
     const auto begin = session_->now();
     const auto end = begin + length;
+    const session::Stretch stretch(*session_, end, session::Stretch::End::at_latest);
     std::optional<std::uint32_t> before;
     while (session_->now() < end && !is_complete()) {
       const auto levels = read();
@@ -113,7 +116,7 @@ class InputWatch {
                   {"input", names_.id(bit)},
                   {"level", level},
                   {"actuated", on}};
-    const auto text = say(*desk_, on ? "actuated" : "not actuated", on ? "已动作" : "未动作");
+    const auto text = say(*desk_, on ? "actuated" : "not actuated");
     desk_->emit(record, fmt::format("{:10.3f}  {} {} ({})", seconds_of(time), names_.name(bit), level, text));
     if (desk_->keeps_samples) events_.emplace_back(std::move(record));
   }
@@ -130,12 +133,11 @@ class InputWatch {
   Criterion judge(unsigned bit) const {
     const bool both = seen_both_ways(bit);
     const bool high = (seen_high_ >> bit & 1U) != 0;
-    auto out = report::holds(
-        names_.id(bit), names_.name(bit), both,
-        both ? "0, 1" : say(*desk_, high ? "only 1" : "only 0", high ? "只有 1" : "只有 0"), "0, 1");
+    auto out = report::holds(names_.id(bit), names_.name(bit), both,
+                             both ? "0, 1" : say(*desk_, high ? "only 1" : "only 0"), "0, 1");
     if (changes_[bit] > 0)
-      out.note = say(*desk_, fmt::format("changed {} time{}", changes_[bit], changes_[bit] == 1 ? "" : "s"),
-                     fmt::format("变化 {} 次", changes_[bit]));
+      out.note = say(*desk_, changes_[bit] == 1 ? std::string("changed once")
+                                                : fmt::format("changed {} times", changes_[bit]));
     return out;
   }
 
@@ -153,8 +155,9 @@ class InputWatch {
     }
     if (expected_.empty())
       out.criteria.push_back(
-          report::at_least("inputs_changed", say(*desk_, "inputs that changed", "有变化的输入"), changed, 1));
-    if (desk_->keeps_samples) out.figures.push_back({"events", std::move(events_), Show::json});
+          report::at_least("inputs_changed", say(*desk_, "inputs that changed"), changed, 1));
+    out.figures.push_back(
+        events_figure(desk_->keeps_samples ? report::Value(std::move(events_)) : report::Value()));
     return out;
   }
 

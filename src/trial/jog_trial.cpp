@@ -4,6 +4,7 @@
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
+#include "session/stretch.hpp"
 #include "trial/motion_trial.hpp"
 #include "trial/verdict.hpp"
 
@@ -49,6 +50,7 @@ class Timetable {
     return Phase{changes_[2 * number], changes_[2 * number + 1]};
   }
   Duration length() const { return length_; }
+  Duration whole() const { return 2 * length_ + kRest; }
 
  private:
   Duration length_;
@@ -82,9 +84,9 @@ class Direction {
   std::string id(std::string_view name) const {
     return fmt::format("{}_{}", name, forward_ ? "forward" : "backward");
   }
-  std::string title(std::string_view english, std::string_view chinese) const {
-    return forward_ ? say(*desk_, fmt::format("forward: {}", english), fmt::format("正转：{}", chinese))
-                    : say(*desk_, fmt::format("backward: {}", english), fmt::format("反转：{}", chinese));
+  std::string title(std::string_view english) const {
+    return forward_ ? say(*desk_, fmt::format("forward: {}", english))
+                    : say(*desk_, fmt::format("backward: {}", english));
   }
   /// More digits than the sensors have say nothing.
   static double rounded(double number) { return parse_real(fmt::format("{:.4g}", number)).value_or(number); }
@@ -95,8 +97,8 @@ class Direction {
     return {};
   }
   void skip(std::string_view name, std::string title_text) {
-    out_->criteria.push_back(report::skipped(id(name), std::move(title_text),
-                                             say(*desk_, "not reported by the drive", "驱动器不提供该数据")));
+    out_->criteria.push_back(
+        report::skipped(id(name), std::move(title_text), say(*desk_, "not reported by the drive")));
   }
 
   /// The change of a quantity from the first to the last of these samples that have it.
@@ -113,7 +115,7 @@ class Direction {
   }
 
   void judge_direction() {
-    auto name = title("travel in commanded direction", "按指令方向的位移");
+    auto name = title("travel in commanded direction");
     const auto way = change(turning_, Signal::position);
     if (!way) return skip("direction", std::move(name));
     const double along = commanded() < 0 ? -*way : *way;
@@ -125,7 +127,7 @@ class Direction {
   }
 
   void judge_speed() {
-    auto name = title("speed deviation", "速度偏差");
+    auto name = title("speed deviation");
     double worst = -1;
     for (const auto* sample : steady_)
       if (const auto speed = (*sample)[Signal::velocity])
@@ -136,7 +138,7 @@ class Direction {
   }
 
   void judge_following_error() {
-    auto name = title("growth of the following error", "跟随误差增长");
+    auto name = title("growth of the following error");
     const auto growth = change(steady_, Signal::following_error);
     const auto way = change(steady_, Signal::position);
     if (!growth || !way || unit(Signal::following_error) != unit(Signal::position))
@@ -147,7 +149,7 @@ class Direction {
   }
 
   void judge_stop(TimePoint end) {
-    auto name = title("time to standstill", "停止时间");
+    auto name = title("time to standstill");
     const double still =
         std::max(plan_->unit == "rpm" ? kStandstillRpm : 0, std::abs(plan_->value) * kStandstillPart);
     std::optional<TimePoint> moved;
@@ -225,6 +227,8 @@ Result<MotionTrial> test_jog(show::Desk& desk, const motion::MotionRequest& requ
   };
   const auto run = [&](motion::Motion& motion, const motion::MotionPlan& planned) {
     jog.keys = [&] { return timetable.key(motion.session().now()); };
+    const auto end = motion.session().now() + timetable.whole();
+    const session::Stretch stretch(motion.session(), end);
     return motion::run_jog(motion, jog, planned);
   };
   return run_test_motion(desk, request, plan, run,

@@ -30,15 +30,14 @@ Result<MotionTrial> run_test_motion(
 
 void judge_motion(const show::Desk& desk, const motion::MotionReport& done, report::TestResult& out) {
   const auto add = [&](std::string id, std::string name, bool good, std::string note) {
-    const auto yes = say(desk, "yes", "是");
-    auto criterion =
-        report::holds(std::move(id), std::move(name), good, good ? yes : say(desk, "NO", "否"), yes);
+    const auto yes = say(desk, "yes");
+    auto criterion = report::holds(std::move(id), std::move(name), good, good ? yes : say(desk, "NO"), yes);
     criterion.note = std::move(note);
     out.criteria.push_back(std::move(criterion));
   };
-  add("completed", say(desk, "motion completed", "运行完成"), done.outcome.has_value(),
+  add("completed", say(desk, "motion completed"), done.outcome.has_value(),
       done.outcome ? std::string() : done.outcome.error().message);
-  add("left_without_power", say(desk, "left de-energised", "结束后已断使能"), done.end.verified,
+  add("left_without_power", say(desk, "left de-energised"), done.end.verified,
       motion::end_text(done.end, done.watchdog));
 }
 

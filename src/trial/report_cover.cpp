@@ -62,7 +62,7 @@ Result<std::vector<std::string>> signatures_of(const show::Desk& desk, const Cov
   if (equals_nocase(trim(words.signatures), "none")) return std::vector<std::string>();
   if (!words.signatures.empty()) return names_of(words.signatures);
   if (words.customer.empty()) return std::vector<std::string>();
-  return std::vector{say(desk, "Commissioning engineer", "调试工程师"), say(desk, "Customer", "客户")};
+  return std::vector{say(desk, "Commissioning engineer"), say(desk, "Customer")};
 }
 
 /// What may stand before the root of an XML document: byte order mark, declarations, comments.

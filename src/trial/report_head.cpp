@@ -17,9 +17,8 @@ using report::Value;
 
 std::string count_text(const show::Desk& desk, const TestCount& tests) {
   const auto passed = tests.all - tests.failed;
-  if (tests.failed == 0) return say(desk, fmt::format("{} passed", passed), fmt::format("{} 项通过", passed));
-  return say(desk, fmt::format("{} passed, {} FAILED", passed, tests.failed),
-             fmt::format("{} 项通过，{} 项未通过", passed, tests.failed));
+  if (tests.failed == 0) return say(desk, fmt::format("{} passed", passed));
+  return say(desk, fmt::format("{} passed, {} FAILED", passed, tests.failed));
 }
 
 /// What a part of it says for people; null where it says nothing.
@@ -33,28 +32,42 @@ Value field_of(const DriveReport& drive, std::string_view part, std::string_view
   return {};
 }
 
+std::string family_text(const show::Desk& desk) {
+  const auto& rules = desk.profile->rules;
+  return fmt::format("{} ({} {})", desk.profile->family, rules.vendor,
+                     desk.chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name);
+}
+
+/// What the desks have of it, each once.
+std::string of_all(std::span<const show::Desk* const> desks, std::string (*text)(const show::Desk&)) {
+  std::vector<std::string> out;
+  for (const auto* desk : desks)
+    if (const auto one = text(*desk); std::find(out.begin(), out.end(), one) == out.end()) out.push_back(one);
+  return fmt::format("{}", fmt::join(out, ", "));
+}
+
+std::string url_of(const show::Desk& desk) { return desk.session->url(); }
+
 }  // namespace
 
-Record report_head(const show::Desk& desk, const ReportCover& cover, const TestCount& tests) {
-  const auto& rules = desk.profile->rules;
-  const auto& name = desk.chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
+Record report_head(std::span<const show::Desk* const> desks, const ReportCover& cover,
+                   const TestCount& tests) {
+  const auto& desk = *desks.front();
   const auto all = Show::everywhere;
   report::List signatures;
   for (const auto& who : cover.signatures) signatures.emplace_back(who);
   Value logo;
   if (!cover.logo.type.empty()) logo = Record{{"type", cover.logo.type}, {"base64", cover.logo.base64}};
-  return {{"customer", report::text_or_null(cover.customer), all, say(desk, "customer", "客户")},
-          {"machine", report::text_or_null(cover.machine), all, say(desk, "machine", "设备")},
-          {"operator", report::text_or_null(cover.operator_name), all, say(desk, "operator", "操作人员")},
+  return {{"customer", report::text_or_null(cover.customer), all, say(desk, "customer")},
+          {"machine", report::text_or_null(cover.machine), all, say(desk, "machine")},
+          {"operator", report::text_or_null(cover.operator_name), all, say(desk, "operator")},
           {"logo", std::move(logo), Show::json},
           {"signatures", cover.signatures.empty() ? Value() : Value(std::move(signatures)), Show::json},
-          {"time", utc_now_text(), all, say(desk, "made at", "生成时间")},
-          {"tool", fmt::format("servoctl {}", version()), all, say(desk, "made with", "生成工具")},
-          {"bus", desk.session->url(), all, say(desk, "bus", "总线")},
-          {"family", fmt::format("{} ({} {})", desk.profile->family, rules.vendor, name), Show::text,
-           say(desk, "drive family", "驱动器系列")},
-          {"family", desk.profile->family, Show::json},
-          {"tests_text", count_text(desk, tests), Show::text, say(desk, "tests", "测试")},
+          {"time", utc_now_text(), all, say(desk, "made at")},
+          {"tool", fmt::format("servoctl {}", version()), all, say(desk, "made with")},
+          {"bus_text", of_all(desks, url_of), Show::text, say(desk, "bus")},
+          {"family_text", of_all(desks, family_text), Show::text, say(desk, "drive family")},
+          {"tests_text", count_text(desk, tests), Show::text, say(desk, "tests")},
           {"tests_passed", tests.failed == 0, Show::json}};
 }
 
@@ -63,29 +76,34 @@ Value link_record(const show::Desk& desk) {
   if (!link) return {};
   const auto or_null = [](const auto& value) { return value ? Value(*value) : Value(); };
   const auto all = Show::everywhere;
-  return Record{{"bitrate", or_null(link->bitrate), all, say(desk, "bitrate (bit/s)", "波特率 (bit/s)")},
+  return Record{{"bitrate", or_null(link->bitrate), all, say(desk, "bitrate (bit/s)")},
                 {"controller", link->health ? Value(can::name(*link->health)) : Value(), all,
-                 say(desk, "controller", "CAN 控制器")},
-                {"tx_errors", or_null(link->tx_errors), all, say(desk, "send errors", "发送错误计数")},
-                {"rx_errors", or_null(link->rx_errors), all, say(desk, "receive errors", "接收错误计数")}};
+                 say(desk, "CAN controller")},
+                {"tx_errors", or_null(link->tx_errors), all, say(desk, "send errors")},
+                {"rx_errors", or_null(link->rx_errors), all, say(desk, "receive errors")}};
 }
 
 report::Table drive_table(const show::Desk& desk, const Report& report) {
   report::Table table;
-  table.columns = {{"drive", say(desk, "drive", "驱动器")},
-                   {"device_name", say(desk, "device name", "设备名称")},
-                   {"software_version", say(desk, "software", "软件版本")},
-                   {"serial", say(desk, "serial", "序列号")},
-                   {"state", say(desk, "state", "状态")},
-                   {"tests", say(desk, "tests", "测试")}};
+  const bool families = report.is_of_several(&DriveReport::family);
+  const bool buses = report.is_of_several(&DriveReport::bus);
+  table.columns = {{"drive", say(desk, "drive")},
+                   {"family", say(desk, "family"), families ? Show::text : Show::json},
+                   {"bus", say(desk, "bus"), buses ? Show::text : Show::json},
+                   {"device_name", say(desk, "device name")},
+                   {"software_version", say(desk, "software")},
+                   {"serial", say(desk, "serial")},
+                   {"state", say(desk, "state")},
+                   {"tests", say(desk, "tests")}};
   for (const auto& drive : report.drives) {
     const auto failed = std::count_if(drive.tests.begin(), drive.tests.end(),
                                       [](const auto& test) { return !report::passed(test); });
     const TestCount tests{drive.tests.size(), static_cast<std::size_t>(failed)};
-    table.rows.push_back({drive.title, field_of(drive, "identity", "device_name"),
+    table.rows.push_back({drive.title, drive.family, drive.bus_name,
+                          field_of(drive, "identity", "device_name"),
                           field_of(drive, "identity", "software_version"),
                           field_of(drive, "identity", "serial"), field_of(drive, "faults", "state"),
-                          tests.all == 0 ? say(desk, "not asked", "未询问") : count_text(desk, tests)});
+                          tests.all == 0 ? say(desk, "not asked") : count_text(desk, tests)});
   }
   return table;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include "report/value.hpp"
 #include "show/desk.hpp"
@@ -14,13 +15,16 @@ struct TestCount {
   std::size_t failed = 0;
 };
 
-/// For whom, by whom, when, with what, where, and how the tests ended: the first lines of a report.
-report::Record report_head(const show::Desk& desk, const ReportCover& cover, const TestCount& tests);
+/// For whom, by whom, when, with what, where, and how the tests ended: the first lines of a report. A desk
+/// for each bus and family.
+report::Record report_head(std::span<const show::Desk* const> desks, const ReportCover& cover,
+                           const TestCount& tests);
 
 /// What the kernel knows of the desk's interface; null for other buses.
 report::Value link_record(const show::Desk& desk);
 
-/// One line for each drive: name, what it is, firmware, serial number, state and tests. For people.
+/// One line for each drive: name, what it is, firmware, serial number, state and tests, where there are
+/// several also family and bus. For people.
 report::Table drive_table(const show::Desk& desk, const Report& report);
 
 }  // namespace servoctl::trial

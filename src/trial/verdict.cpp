@@ -5,6 +5,7 @@
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
+#include "report/catalogue.hpp"
 #include "report/line.hpp"
 #include "show/identity.hpp"
 
@@ -19,11 +20,11 @@ using report::Verdict;
 
 std::string verdict_text(const show::Desk& desk, Verdict verdict) {
   switch (verdict) {
-    case Verdict::passed: return say(desk, "passed", "通过");
-    case Verdict::failed: return say(desk, "FAILED", "未通过");
+    case Verdict::passed: return say(desk, "passed");
+    case Verdict::failed: return say(desk, "FAILED");
     case Verdict::skipped: break;
   }
-  return say(desk, "skipped", "跳过");
+  return say(desk, "skipped");
 }
 
 std::string limit_text(const Criterion& criterion) {
@@ -55,8 +56,8 @@ report::Table criteria_table(const show::Desk& desk, const TestResult& result) {
 
 }  // namespace
 
-std::string say(const show::Desk& desk, std::string_view english, std::string_view chinese) {
-  return std::string(desk.chinese ? chinese : english);
+std::string say(const show::Desk& desk, std::string_view english) {
+  return desk.speaks_chinese() ? report::in_chinese(english) : std::string(english);
 }
 
 Error failure(const TestResult& result) {

@@ -12,8 +12,8 @@
 /// What the commands `test …` have in common.
 namespace servoctl::trial {
 
-/// `english`, or `chinese` where names are wanted in Chinese.
-std::string say(const show::Desk& desk, std::string_view english, std::string_view chinese);
+/// What the catalogue has for it, where the desk speaks Chinese.
+std::string say(const show::Desk& desk, std::string_view english);
 
 /// One result as text and JSON; `plot` says where its samples are shown.
 report::Record verdict_record(const show::Desk& desk, const report::TestResult& result, report::Show plot);

@@ -19,7 +19,7 @@ seed = int(sys.argv[3]) if len(sys.argv) > 3 else random.randrange(1 << 32)
 rng = random.Random(seed)
 folder = pathlib.Path(tempfile.mkdtemp(prefix="servoctl-text-"))
 families = ("dm", "sv2", "cia402", "dm", "sv2", "cia402", "gsd600", "da200", "ts")
-env = dict(os.environ, HOME=str(folder), XDG_STATE_HOME=str(folder / "state"), TERM="xterm")
+env = dict(os.environ, HOME=str(folder), XDG_STATE_HOME=str(folder / "state"), TERM="xterm", NO_COLOR="1")
 env.pop("SERVOCTL_BUS", None)
 
 PIECES = [b"\x1b[2J", b"\x1b]0;owned\x07", b"\x9b31m", b"\xc2\x9b31m", b"\r", b"\x08", b"\x7f", b"\x00", b"\nerror: it is done\n",

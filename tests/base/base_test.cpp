@@ -93,6 +93,23 @@ TEST(ObjectAddress, IsReadInEverySpelling) {
     EXPECT_FALSE(parse_object_address(text)) << text;
 }
 
+TEST(ObjectAddress, SaysItsSubIndexIsHexadecimalWhereDecimalWouldBeAnother) {
+  EXPECT_EQ(to_string(ObjectAddress{0x6041, 0}), "0x6041:0");
+  EXPECT_EQ(to_string(ObjectAddress{0x6099, 9}), "0x6099:9");
+  EXPECT_EQ(to_string(ObjectAddress{0x2001, 0x0A}), "0x2001:0Ah");
+  EXPECT_EQ(to_string(ObjectAddress{0x2001, 0x10}), "0x2001:10h");
+  EXPECT_EQ(to_string(ObjectAddress{0x2001, 0xFF}), "0x2001:FFh");
+}
+
+TEST(ObjectAddress, IsInDoubtWhereDigitsAloneWouldBeAnotherInDecimal) {
+  EXPECT_EQ(doubtful_sub("2001:10"), "10");
+  EXPECT_EQ(doubtful_sub("0x2001.15"), "15");
+  EXPECT_EQ(doubtful_sub("2001SUB010"), "010");
+  for (const auto* text :
+       {"2001:10h", "2001:0x10", "2001:1F", "2001:9", "2001:09", "2010", "Pn0215", "P0.10"})
+    EXPECT_FALSE(doubtful_sub(text)) << text;
+}
+
 RC_GTEST_PROP(ObjectAddress, IsPrintedInTheFormThatIsRead, (std::uint16_t index, std::uint8_t sub)) {
   RC_ASSERT(parse_object_address(to_string(ObjectAddress{index, sub})) == (ObjectAddress{index, sub}));
 }
@@ -137,6 +154,13 @@ TEST(Clip, CutsNoCharacterInTwo) {
   EXPECT_EQ(clip("位置环增益", 5), "位置…");
   EXPECT_EQ(clip("位置环增益", 4), "位…");
   EXPECT_EQ(clip("abc", 0), "");
+}
+
+TEST(Wrapped, BeginsEachParagraphAnewAndKeepsACommandInOneLine) {
+  EXPECT_EQ(wrapped("one two three\n\nfour five six", 0, 10), "one two\nthree\n\nfour five\nsix");
+  EXPECT_EQ(wrapped("then `test home` says it", 2, 14), "then\n  `test home`\n  says it");
+  EXPECT_EQ(wrapped("先执行`test home`再看", 0, 12), "先执行\n`test home`\n再看");
+  EXPECT_EQ(wrapped("a `b c", 0, 4), "a `b\nc");
 }
 
 TEST(Split, KeepsEmptyPartsButMakesNoneOfNothing) {

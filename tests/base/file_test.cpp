@@ -9,9 +9,12 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <string>
+
+#include "base/regular_files.hpp"
 
 namespace servoctl {
 namespace {
@@ -209,6 +212,32 @@ TEST_F(WrittenFile, IsCheckedAsItWillBeWritten) {
     EXPECT_EQ(files(), before);
     EXPECT_EQ(write_file_atomically(path, "x").has_value(), could);
   }
+}
+
+TEST_F(WrittenFile, IsNeitherReadNorWaitedForWhereOnlyRegularFilesAre) {
+  const auto fifo = folder / "fifo";
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  const auto link = folder / "link";
+  fs::create_symlink(fifo, link);
+  const RegularFilesOnly regular;
+  ::alarm(20);  // One that is opened without a writer is waited for without end.
+  const auto begin = std::chrono::steady_clock::now();
+  for (const auto& path : {fifo, link, fs::path("/dev/zero")}) {
+    EXPECT_EQ(read_file(path).error().code, Errc::file) << path;
+    EXPECT_EQ(write_file_atomically(path, "x").error().code, Errc::file) << path;
+  }
+  ::alarm(0);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+  EXPECT_TRUE(fs::is_fifo(fifo));
+}
+
+TEST_F(WrittenFile, IsNotReadUnaskedWhenItIsHuge) {
+  const auto path = folder / "huge";
+  std::ofstream(path) << "x";
+  fs::resize_file(path, std::uintmax_t{33} << 20U);
+  EXPECT_TRUE(read_file(path));
+  const RegularFilesOnly regular;
+  EXPECT_EQ(read_file(path).error().code, Errc::file);
 }
 
 }  // namespace

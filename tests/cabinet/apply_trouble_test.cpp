@@ -212,5 +212,42 @@ TEST(CabinetTrouble, AnApplyThatIsKilledAtAnyStepIsGoneOnWith) {
   EXPECT_GT(cut_off, 8);
 }
 
+TEST(CabinetTrouble, AnApplyThatIsKilledIsNotGoneOnWithInTheDriveThatReplacesItsOwn) {
+  TroubledFleet world(1, 1, Extent::parameters);
+  auto& fleet = world.fleet;
+  const auto exchange = [&](std::uint32_t serial) {
+    fleet.heal();
+    fleet.drive(0).enable_lss(serial);
+    fleet.power_cycle();
+  };
+  exchange(1);
+  for (int step = 0; !world.is_cut_off(0) || world.is_as_before(0); ++step) {
+    ASSERT_LT(step, 500);
+    fs::remove(settings::journal_of(before_file(fleet.cabinet, fleet.cabinet.axes[0])));
+    fleet.trouble({.kill_at = step});
+    EXPECT_THROW((void)fleet.apply(), ProcessEnds);
+  }
+  exchange(2);
+  const auto held = fleet.held(0, world.wanted[0]);
+  ApplyOptions resume;
+  resume.resume = true;
+  (void)fleet.apply(resume);
+  ASSERT_EQ(fleet.desk.errors.size(), 1U);
+  EXPECT_NE(fleet.desk.errors[0].message.find("was of another drive: its serial number (1018h:04) differs"),
+            std::string::npos)
+      << fleet.desk.errors[0].message;
+  EXPECT_EQ(fleet.held(0, world.wanted[0]), held);
+  EXPECT_TRUE(world.is_cut_off(0));
+  // Without it the new drive gets what the file says, and the old one's notes stay.
+  const auto applied = fleet.apply();
+  ASSERT_TRUE(applied && fleet.desk.errors.empty());
+  EXPECT_TRUE(world.is_as_wanted(0));
+  EXPECT_TRUE(fs::exists(fleet.folder() / "cabinet.toml.before-axis1-drive-2.json"));
+  EXPECT_FALSE(fs::exists(fleet.folder() / "cabinet.toml.wanted-axis1-drive-2.json"));
+  EXPECT_TRUE(world.is_cut_off(0));
+  exchange(1);
+  world.finish();
+}
+
 }  // namespace
 }  // namespace servoctl::cabinet

@@ -59,5 +59,27 @@ TEST(ForeignClock, FollowsAClockThatRunsSlower) {
   }
 }
 
+TEST(ForeignClock, AClockThatWasSetBackALittleIsFollowedAfterASecond) {
+  ForeignClock clock;
+  (void)clock.time(seconds(1'000), at(1000));
+  for (int i = 1; i < 100; ++i) {
+    const auto now = at(1000 + 50 * i);
+    const auto stamp = seconds(1'000) + milliseconds(50 * i) - milliseconds(1'500);
+    const auto time = clock.time(stamp, now);
+    if (i <= 45) continue;
+    EXPECT_GT(time, now - milliseconds(10)) << i;
+  }
+}
+
+TEST(ForeignClock, FramesThatComeInBurstsKeepTheirTimesForLong) {
+  ForeignClock clock;
+  (void)clock.time(seconds(1'000), at(1000));
+  for (int i = 1; i < 200; ++i) {
+    const auto now = at(1000 + 300 * ((i + 5) / 6));
+    const auto time = clock.time(seconds(1'000) + milliseconds(50 * i), now);
+    EXPECT_LT(time, at(1000 + 50 * i + 10)) << i;
+  }
+}
+
 }  // namespace
 }  // namespace servoctl::can

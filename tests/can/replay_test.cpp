@@ -15,7 +15,7 @@ class ReplayTest : public testing::Test {
  protected:
   void record(std::string_view text) {
     std::ofstream(path) << text;
-    auto opened = open_replay(path);
+    auto opened = open_replay(path.string());
     ASSERT_TRUE(opened) << opened.error().message;
     bus = std::move(*opened);
   }
@@ -81,8 +81,27 @@ TEST_F(ReplayTest, SkipsLinesThatAreNoFramesAndRefusesAFileWithoutAny) {
   record("a comment\n(1.0) can0 701#00\r\n\n");
   EXPECT_EQ(next(), "701#00");
   std::ofstream(path) << "nothing\n";
-  EXPECT_EQ(open_replay(path).error().code, Errc::file);
+  EXPECT_EQ(open_replay(path.string()).error().code, Errc::file);
   EXPECT_EQ(open_replay("/no/such/file").error().code, Errc::file);
+}
+
+TEST_F(ReplayTest, OfSeveralBusesAnswersFromTheOneThatIsNamed) {
+  const std::string both =
+      "(0.0) can0 601#4000100000000000\n(0.1) can0 581#4300100092010200\n"
+      "(0.2) can1 601#4000100000000000\n(0.3) can1 581#4300100034120000\n";
+  std::ofstream(path) << both;
+  const auto refused = open_replay(path.string());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::usage);
+  EXPECT_NE(refused.error().message.find("frames of several buses: can0 (2), can1 (2)"), std::string::npos);
+  EXPECT_NE(refused.error().hint.find("?channel=can0"), std::string::npos);
+  EXPECT_EQ(open_replay(path.string() + "?channel=can7").error().code, Errc::usage);
+  auto opened = open_replay(path.string() + "?channel=can1");
+  ASSERT_TRUE(opened) << opened.error().message;
+  bus = std::move(*opened);
+  EXPECT_TRUE(send("601#4000100000000000"));
+  EXPECT_EQ(next(), "581#4300100034120000");
+  EXPECT_EQ(next(), "");
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -40,6 +41,7 @@ class SlcanOpen : public testing::Test {
       }
       opening.on_time(now);
     }
+    owed_ = answers.size();
     took_ = std::chrono::duration_cast<milliseconds>(now - begin);
     version_ = opening.version();
     acknowledges_ = opening.acknowledges();
@@ -50,6 +52,7 @@ class SlcanOpen : public testing::Test {
   std::string sent_;
   std::string version_;
   milliseconds took_{};
+  std::size_t owed_ = 0;  ///< Answers that were still under way in the end.
   bool acknowledges_ = false;
   bool heard_something_ = false;
 };
@@ -77,6 +80,17 @@ TEST_F(SlcanOpen, ALateAdapterIsWaitedForLongerEachRound) {
     sent_.clear();
     EXPECT_EQ(open(lawicel, milliseconds(delay)), OpeningState::open) << delay;
     EXPECT_TRUE(acknowledges_) << delay;
+  }
+}
+
+TEST_F(SlcanOpen, AnswersThatComeInTheNextRoundAreNotTakenForThoseToItsWords) {
+  for (int delay = 50; delay <= 1150; delay += 50) {
+    sent_.clear();
+    EXPECT_EQ(open(lawicel, milliseconds(delay)), OpeningState::open) << delay;
+    EXPECT_EQ(owed_, 0U) << delay << " ms: " << sent_;
+    EXPECT_EQ(sent_.substr(sent_.size() - 5), "S6\rO\r") << delay;
+    EXPECT_EQ(std::count(sent_.begin(), sent_.end(), 'S'), 1) << delay << " ms: " << sent_;
+    EXPECT_LT(took_, SlcanOpening::kLongest) << delay;
   }
 }
 
@@ -117,6 +131,31 @@ TEST_F(SlcanOpen, WhatAnswersNothingIsNoAdapter) {
 TEST_F(SlcanOpen, AnEchoIsNoAdapter) {
   EXPECT_EQ(open([](const std::string& command) { return command; }), OpeningState::no_answer);
   EXPECT_TRUE(heard_something_);
+}
+
+TEST_F(SlcanOpen, ADeviceThatEchoesAndAnswersSomethingIsNoAdapter) {
+  EXPECT_EQ(open([](const std::string& command) { return command + "\r\nERROR\r\n"; }),
+            OpeningState::no_answer);
+  EXPECT_EQ(sent_.find('S'), std::string::npos) << sent_;
+  EXPECT_EQ(sent_.find('O'), std::string::npos) << sent_;
+}
+
+TEST_F(SlcanOpen, ADeviceThatSaysTheSameTextUnaskedIsNoAdapter) {
+  EXPECT_EQ(open([](const std::string&) { return std::string("ready\r\n"); }), OpeningState::no_answer);
+  EXPECT_EQ(sent_.find('S'), std::string::npos) << sent_;
+  EXPECT_TRUE(heard_something_);
+}
+
+TEST_F(SlcanOpen, WhoCannotListenOnlyIsNotOpenedForIt) {
+  const auto listens = SlcanOpening::Mode::listen_only;
+  EXPECT_EQ(open([](const std::string& command) { return command == "L\r" ? "\a" : lawicel(command); },
+                 milliseconds(1), listens),
+            OpeningState::refused_listening);
+  sent_.clear();
+  EXPECT_EQ(open([](const std::string& command) { return std::string(command == "V\r" ? "b158aa7\r" : ""); },
+                 milliseconds(1), listens),
+            OpeningState::refused_listening);
+  EXPECT_EQ(sent_, "C\rV\rV\r") << "nobody knows what it would do with L";
 }
 
 TEST_F(SlcanOpen, ADeviceThatTalksByItselfIsNoAdapter) {

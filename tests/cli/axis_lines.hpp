@@ -65,6 +65,11 @@ family = "sv2"
     console.err_text.clear();
     return LineRunner(*shell).run(line);
   }
+  static std::string content(const fs::path& file) {
+    std::stringstream out;
+    out << std::ifstream(file).rdbuf();
+    return out.str();
+  }
   std::string all() const { return console.out_text + console.err_text; }
   bool says(std::string_view what) const { return all().find(what) != std::string::npos; }
 

@@ -82,7 +82,7 @@ TEST_F(AxisLines, WhatMovesOrGoesOnIsOfOneBusAndFamily) {
 
 TEST_F(AxisLines, AMotionIsToldInTheUnitOfTheLoadAndMovesThatFar) {
   EXPECT_EQ(run("move feeder1 20mm --speed 50mm/s --yes"), 0) << all();
-  EXPECT_TRUE(says("go 3600 deg (20 mm) to 3600 deg (20 mm) at 1500 rpm (50 mm/s)")) << all();
+  EXPECT_TRUE(says("go by 3600 deg (20 mm), to 3600 deg (20 mm), at 1500 rpm (50 mm/s)")) << all();
   EXPECT_TRUE(says("position of the load")) << all();
   EXPECT_EQ(run("read 0x6064 -n feeder1 --json"), 0) << all();
   EXPECT_TRUE(says(R"("value":100000,)")) << all();                     // Ten revolutions of 10000.
@@ -126,16 +126,94 @@ TEST_F(AxisLines, APlanOfADriveInOpDoesNotListThePdosOfTheProcessData) {
 TEST_F(AxisLines, TheReportNamesTheAxis) {
   const auto page = folder / "report.html";
   EXPECT_EQ(run("report " + page.string() + " -n feeder2 --lang zh"), 0) << all();
-  std::stringstream text;
-  text << std::ifstream(page).rdbuf();
-  EXPECT_NE(text.str().find("feeder2（节点 2）"), std::string::npos);
+  EXPECT_NE(content(page).find("feeder2（节点 2）"), std::string::npos);
 }
 
-TEST_F(AxisLines, AReportIsOfOneBusAndFamilySoThatNoneReplacesAnother) {
-  const auto page = folder / "all.html";
-  EXPECT_EQ(run("report " + page.string() + " -n all"), 2) << all();
-  EXPECT_TRUE(says("'report' is for axes of one bus and one family at a time")) << all();
-  EXPECT_FALSE(std::filesystem::exists(page));
+TEST_F(AxisLines, OneReportIsOfAllBusesAndFamiliesInTheOrderOfTheFile) {
+  const auto file = folder / "all.json";
+  EXPECT_EQ(run("report " + file.string() + " -n all"), 0) << all();
+  const auto report = report::parse_json(content(file), "all.json");
+  ASSERT_TRUE(report);
+  std::string axes;
+  for (const auto& node : std::get<report::List>(report::find(*report, "nodes")->data()))
+    axes += report::to_json(*report::find(node, "axis")) + report::to_json(*report::find(node, "family"));
+  EXPECT_EQ(axes, R"("feeder1""gsd600""feeder2""gsd600""送料""da200""table""sv2")");
+  EXPECT_EQ(std::get<report::List>(report::find(*report, "buses")->data()).size(), 2U);
+  EXPECT_EQ(run("report " + (folder / "all.html").string() + " -n all"), 0) << all();
+  const auto page = content(folder / "all.html");
+  for (const auto* text : {"feeder1 (node 1)", "送料 (node 3)", "table (node 1)", "Bus ring (coe:sim:sv2@1)"})
+    EXPECT_NE(page.find(text), std::string::npos) << text;
+}
+
+TEST_F(AxisLines, OneFileIsNotReplacedByTheNextBusOrFamily) {
+  const auto file = (folder / "one").string();
+  for (const auto* line : {"backup {}.json -n all", "pdo save {}.toml -n feeder1,table",
+                           "read 1000 --to {} -n feeder1,table", "test comm --junit {} -n feeder1,table"}) {
+    SCOPED_TRACE(line);
+    EXPECT_EQ(run(fmt::format(fmt::runtime(line), file)), 2) << all();
+    EXPECT_TRUE(says("for axes of one bus and one family at a time; these are of ")) << all();
+    for (const auto* ending : {"", ".json", ".toml"}) EXPECT_FALSE(fs::exists(file + ending)) << ending;
+  }
+  EXPECT_EQ(run("test comm --count 3 -n feeder1,table"), 0) << all();
+}
+
+TEST_F(AxisLines, AnAxisOfAFileThatTheLineNamesIsKnownByItsNameAlone) {
+  std::ofstream(folder / "other.toml") << "[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.hoist]\nnode = 1\n"
+                                          "family = \"gsd600\"\n";
+  for (const auto* form : {"status hoist --cabinet {}", "status hoist --cabinet={}"})
+    EXPECT_EQ(run(fmt::format(fmt::runtime(form), (folder / "other.toml").string())), 0) << all();
+}
+
+TEST_F(AxisLines, AWrongFamilyIsCorrectedInTheFileThatSaysIt) {
+  write("[bus.main]\nurl = \"sim:dm@1\"\n[axis.arm]\nnode = 1\nfamily = \"gsd600\"\n");
+  EXPECT_EQ(run("param set Pn0214=45Hz -n arm"), 8) << all();
+  EXPECT_TRUE(says("if the nameplate agrees, correct `family` in the cabinet file")) << all();
+  EXPECT_FALSE(says("add -d dm")) << all();
+}
+
+TEST_F(AxisLines, AReportOfABusThatIsNotThereIsNotWritten) {
+  write(
+      "[bus.main]\nurl = \"sim:gsd600@1\"\n[bus.ring]\nurl = \"can99\"\n"
+      "[axis.a]\nbus = \"main\"\nnode = 1\nfamily = \"gsd600\"\n"
+      "[axis.b]\nbus = \"ring\"\nnode = 1\nfamily = \"sv2\"\n");
+  EXPECT_NE(run("report " + (folder / "half.html").string() + " -n all"), 0) << all();
+  EXPECT_FALSE(std::filesystem::exists(folder / "half.html"));
+}
+
+TEST_F(AxisLines, ATestBelongsToTheAxisItNamesWhereTwoBusesHaveTheNode) {
+  EXPECT_EQ(run("test comm --count 3 -n table --json"), 0) << all();
+  std::ofstream(folder / "tests.json") << console.out_text;
+  const auto file = folder / "tested.json";
+  EXPECT_EQ(run("report " + file.string() + " -n feeder1,table --tests " + (folder / "tests.json").string()),
+            0)
+      << all();
+  const auto report = report::parse_json(content(file), "tested.json");
+  ASSERT_TRUE(report);
+  std::string reads;
+  for (const auto& node : std::get<report::List>(report::find(*report, "nodes")->data())) {
+    const auto& tests = std::get<report::List>(report::find(node, "tests")->data());
+    ASSERT_EQ(tests.size(), 1U);
+    reads += report::to_json(*report::find(tests.front(), "criteria")).find("in 3 reads") != std::string::npos
+                 ? "earlier "
+                 : "now ";
+  }
+  EXPECT_EQ(reads, "now earlier ");
+  EXPECT_EQ(run("report " + file.string() + " -n feeder1 --tests " + (folder / "tests.json").string()), 0);
+  EXPECT_TRUE(says("test comm of axis table is not in the report: add the axis to -n")) << all();
+}
+
+TEST_F(AxisLines, AReportSaysWhatTheFileWantsAndWhetherTheDriveHoldsIt) {
+  write(
+      "[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.lift]\nnode = 1\nfamily = \"gsd600\"\nturn = 131072\n"
+      "per_turn = \"20 mm\"\nlimits.speed = \"600rpm\"\nparameters.Pn0214 = \"45Hz\"\nparameters.Pn0202 = 32\n");
+  EXPECT_EQ(run("param set Pn0202=32 -n lift"), 0) << all();
+  const auto file = folder / "lift.json";
+  EXPECT_EQ(run("report " + file.string() + " -n lift"), 0) << all();
+  const auto text = content(file);
+  for (const auto* part :
+       {R"("load":"20 mm/rev","limits":{"speed":"600rpm",)", R"("different":1,"values":[)",
+        R"("wanted":"450 = 45 Hz","present":"600 = 60 Hz","held":false})", R"("held":true})"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
 }
 
 TEST_F(AxisLines, CabinetCommandsHoldDrivesAgainstTheFileAndNothingElse) {

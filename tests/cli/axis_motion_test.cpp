@@ -25,7 +25,7 @@ limits = { speed = "100mm/s" }
 )");
   EXPECT_EQ(run("cabinet check"), 0) << all();
   EXPECT_EQ(run("move lift 20mm --speed 50mm/s --accel 500mm/s2 --yes"), 0) << all();
-  EXPECT_TRUE(says("go -360 deg (20 mm) to -360 deg (20 mm) at 150 rpm")) << all();
+  EXPECT_TRUE(says("go by -360 deg (20 mm), to -360 deg (20 mm), at 150 rpm")) << all();
   EXPECT_EQ(run("read 0x6064 -n lift --json"), 0) << all();
   EXPECT_TRUE(says(R"("value":-10000,)")) << all();
   EXPECT_EQ(run("jog lift 50mm/s --for 100ms --yes"), 0) << all();
@@ -62,6 +62,12 @@ TEST_F(AxisMotion, ALineThatChangesADriveHoldsItsSerialNumberAgainstTheFile) {
 TEST_F(AxisMotion, AxesOfOneFamilyHaveTheirCountsTogether) {
   EXPECT_EQ(run("units show -n feeder1,feeder2 --json"), 0) << all();
   EXPECT_TRUE(says(R"("axis":"feeder2")") && !says(R"("value":null)")) << all();
+}
+
+TEST_F(AxisMotion, HomingWhereItStandsIsNotRefusedForASpeedItDoesNotUse) {
+  EXPECT_EQ(run("home 35 -n table --yes"), 0) << all();
+  EXPECT_EQ(run("home 17 -n table --yes"), 8) << all();
+  EXPECT_TRUE(says("is above the limit of 300 rpm")) << all();
 }
 
 }  // namespace

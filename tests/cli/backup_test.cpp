@@ -19,7 +19,8 @@ TEST_F(BackupTest, OfEveryFamilyIsWhatTheDriveHolds) {
     EXPECT_NE(text.find(fmt::format("\"family\":\"{}\"", family)), std::string::npos);
     EXPECT_NE(text.find("\"time\":\"2026-11-18T11:06:40Z\""), std::string::npos);
     EXPECT_NE(
-        text.find("\"name\":\"Controlword\",\"type\":\"u16\",\"bytes\":null,\"left_out\":\"process data\""),
+        text.find(
+            "\"name\":\"Controlword\",\"type\":\"u16\",\"bytes\":null,\"value\":null,\"unit\":null,\"label\":null,\"left_out\":\"process data\""),
         std::string::npos);
   }
 }
@@ -71,7 +72,7 @@ TEST_F(BackupTest, OfADriveThatFallsSilentIsNotWritten) {
   EXPECT_EQ(run("backup %cabinet -n 1,2"), 4);
   EXPECT_FALSE(fs::exists(folder / "cabinet/node-1.json"));
   spill("old.json", "restores the old values");
-  EXPECT_EQ(run("backup %old.json"), 4);
+  EXPECT_EQ(run("backup %old.json --yes"), 4);
   EXPECT_EQ(slurp("old.json"), "restores the old values");
 }
 
@@ -139,6 +140,29 @@ TEST(DriveSettings, HoldNothingThatMovesOrStartsAnything) {
     }
     EXPECT_GT(kept, 50U) << family;
   }
+}
+
+TEST_F(BackupTest, WhatIsNoBackupIsReplacedOnlyAfterAQuestion) {
+  const auto notes = folder / "notes.txt";
+  std::ofstream(notes) << "my notes\n";
+  EXPECT_EQ(run("backup %notes.txt"), 8) << console.out_text;
+  EXPECT_NE(console.err_text.find("which is no backup?"), std::string::npos) << console.err_text;
+  std::stringstream text;
+  text << std::ifstream(notes).rdbuf();
+  EXPECT_EQ(text.str(), "my notes\n");
+  EXPECT_EQ(run("backup %notes.txt --yes"), 0) << console.err_text;
+  EXPECT_NE(console.err_text.find("is written as batch"), std::string::npos) << console.err_text;
+  std::filesystem::create_directories(folder / "cell");
+  std::ofstream(folder / "cell" / "node-2.json") << "my notes\n";
+  EXPECT_EQ(run("backup %cell -n 1,2"), 8) << console.out_text;
+  EXPECT_FALSE(std::filesystem::exists(folder / "cell" / "node-1.json")) << "asked before anything is written";
+  std::stringstream inside;
+  inside << std::ifstream(folder / "cell" / "node-2.json").rdbuf();
+  EXPECT_EQ(inside.str(), "my notes\n");
+  // Each of its own formats it knows again.
+  for (const auto* name : {"notes.txt", "a.json", "a.dcf", "a.csv", "a.servoctl"})
+    for (int time = 0; time < 2; ++time)
+      EXPECT_EQ(run(fmt::format("backup %{}", name)), 0) << name << console.err_text;
 }
 
 }  // namespace

@@ -200,7 +200,7 @@ std::string gateway(std::string_view line) {
 TEST(GatewayLine, BecomesALineOfOurs) {
   EXPECT_EQ(gateway("r 0x1000 0 u32"), "read 0x1000:0 --type u32");
   EXPECT_EQ(gateway("4 r 0x1018 1"), "read 0x1018:1 -n 4");
-  EXPECT_EQ(gateway("1 4 read 4120 10 U32"), "read 0x1018:A --type u32 -n 4");
+  EXPECT_EQ(gateway("1 4 read 4120 10 U32"), "read 0x1018:0Ah --type u32 -n 4");
   EXPECT_EQ(gateway("[12] 1 4 w 0x1017 0 u16 500"), "write 0x1017:0 500 --type u16 -n 4");
   EXPECT_EQ(gateway("4 w 0x6065 0 i32 -5"), "write 0x6065:0 -5 --type i32 -n 4");
   EXPECT_EQ(gateway("4 write 0x2000 0 vs \"two words\""), "write 0x2000:0 \"two words\" --type vs -n 4");

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "../source_dir.hpp"
+#include "chinese_words.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/shell.hpp"
 #include "recording_console.hpp"
@@ -56,6 +57,23 @@ class CabinetInit : public testing::Test {
 };
 
 constexpr const char* kFiveFamilies = "sim:gsd600@1,dm@2,da200@3,ts@4,sv2@5";
+
+TEST_F(CabinetInit, WritesItsCommentsInTheLanguageOfWhoReads) {
+  ASSERT_EQ(run(std::string("cabinet init FILE -b ") + kFiveFamilies + " --lang zh"), 0) << all();
+  std::istringstream lines(text());
+  std::size_t comments = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const auto at = line.find("# ");
+    if (at == std::string::npos) continue;
+    const auto note = line.find("# ", at + 1);
+    const auto comment = line.substr(note == std::string::npos ? at : note);
+    if (comment.find(" = ") != std::string::npos) continue;
+    ++comments;
+    EXPECT_EQ(english_words(comment), std::vector<std::string>()) << line;
+  }
+  EXPECT_GT(comments, 15U) << text();
+  EXPECT_EQ(run("cabinet check"), 0) << all();
+}
 
 TEST_F(CabinetInit, WritesAFileByWhichNothingIsToBeDoneOnAnyFamily) {
   EXPECT_EQ(

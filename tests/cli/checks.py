@@ -1,7 +1,11 @@
 """What the tests of the program on terminals and pipes have in common."""
 import json
+import os
+import pty
+import select
 import subprocess
 import sys
+import time
 
 failures = 0
 
@@ -17,6 +21,33 @@ def status(servoctl, env):
     """What `status` says of the drive; None while nobody answers."""
     answer = subprocess.run([servoctl, "status", "--json"], env=env, capture_output=True)
     return json.loads(answer.stdout)["result"][0] if answer.returncode == 0 else None
+
+
+def asked(words, env, answer, meanwhile=lambda: None, typed_before=b"", folder=None):
+    """What a line says at a terminal, and its exit code: its question is answered behind what happens meanwhile."""
+    process, terminal = pty.fork()
+    if process == 0:
+        if folder:
+            os.chdir(folder)
+        os.execvpe(words[0], words, env)
+    out, answered = b"", False
+    if typed_before:
+        os.write(terminal, typed_before)
+    end = time.monotonic() + 60
+    while time.monotonic() < end:
+        if select.select([terminal], [], [], 0.1)[0]:
+            try:
+                data = os.read(terminal, 4096)
+            except OSError:
+                break
+            if not data:
+                break
+            out += data
+        if not answered and b"[y/N]" in out:
+            answered = True
+            meanwhile()
+            os.write(terminal, answer)
+    return out.decode(errors="replace"), os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
 
 
 def finish():

@@ -10,17 +10,20 @@
 #include <sstream>
 
 #include "base/text.hpp"
+#include "chinese_words.hpp"
+#include "cli/terminal/completer.hpp"
 #include "command/help_text.hpp"
 #include "command/prompt_words.hpp"
 #include "command/registry.hpp"
-#include "golden_cases.hpp"
+#include "drive/profile.hpp"
+#include "report/chinese_marks.hpp"
+#include "show/chinese_names.hpp"
 
 namespace servoctl::cli {
 namespace {
 
-/// Everything in English that is no text of the program: names and remarks in drive data, files of
-/// tests, command lines.
-const std::string& english_data() {
+/// What stands in files that come from others: Chinese in an error of JSON is theirs.
+const std::string& foreign_data() {
   static const std::string text = [] {
     std::string out;
     for (const auto* folder : {"eds", "tests/cli/data", "tests/cli/golden/cases.txt"}) {
@@ -37,52 +40,12 @@ const std::string& english_data() {
       for (const auto& entry : std::filesystem::recursive_directory_iterator(path))
         if (entry.is_regular_file()) read(entry.path());
     }
-    for (const auto* command : command::registry()) {
-      out += "servoctl " + std::string(command->path) + "\n";
-      for (const auto& example : command->examples) out += std::string(example.line) + "\n";
-    }
     return out;
   }();
   return text;
 }
 
-/// Three words of English one behind the other, outside quotes, backticks and what comes from files.
-std::string english_in(std::string line) {
-  static const std::regex kept("`[^`]*`|'[^']*'|\"[^\"]*\"");
-  static const std::regex sentence("(^|[^A-Za-z./_-])([a-z]{2,} [a-z]{2,} [a-z]{2,})(?![a-z_./-])");
-  line = std::regex_replace(line, kept, "#");
-  std::smatch found;
-  while (std::regex_search(line, found, sentence)) {
-    if (english_data().find(found[2].str()) == std::string::npos) return found[2].str();
-    line = found[2].str().substr(found[2].str().find(' ') + 1) + found.suffix().str();
-  }
-  return {};
-}
-
-/// Lines that stay: the reason stands behind the last column of the file.
-std::vector<std::string> exceptions() {
-  std::vector<std::string> out;
-  std::ifstream file(golden_source() / "tests/cli/chinese_exceptions.txt");
-  for (std::string line; std::getline(file, line);)
-    if (!line.empty() && line.front() != '#') out.push_back(line.substr(0, line.find("  #")));
-  return out;
-}
-
-std::set<std::string> english_lines(const std::string& said) {
-  static const auto excepted = exceptions();
-  std::set<std::string> out;
-  std::istringstream lines(said);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with("$ ") || line.starts_with("{")) continue;
-    const auto english = english_in(line);
-    const bool known = std::any_of(excepted.begin(), excepted.end(),
-                                   [&](const auto& one) { return line.find(one) != std::string::npos; });
-    if (!english.empty() && !known) out.insert(english + "  in  " + line);
-  }
-  return out;
-}
-
-TEST(Chinese, LeavesNoEnglishSentenceInWhatGoldenCasesShow) {
+TEST(Chinese, LeavesNoEnglishWordInWhatGoldenCasesShow) {
   std::filesystem::current_path(golden_source());
   ::setenv("SOURCE_DATE_EPOCH", "1795000000", 1);
   std::set<std::string> left;
@@ -90,16 +53,108 @@ TEST(Chinese, LeavesNoEnglishSentenceInWhatGoldenCasesShow) {
   for (const auto& line : left) ADD_FAILURE() << line;
 }
 
-TEST(Chinese, LeavesNoEnglishSentenceInHelp) {
+/// `状态, 故障 (pp)` is written `状态，故障（pp）`: one way everywhere, whoever put the text together.
+TEST(Chinese, HasTheMarksOfChineseBesideItInWhatGoldenCasesShow) {
+  std::filesystem::current_path(golden_source());
+  ::setenv("SOURCE_DATE_EPOCH", "1795000000", 1);
+  std::set<std::string> wrong;
+  for (const auto& each : golden_cases()) {
+    std::istringstream lines(play_golden(each, " --lang zh").said);
+    for (std::string line; std::getline(lines, line);) {
+      const bool data = line.starts_with("$ ") || line.starts_with("{") || line.starts_with("[exit");
+      const bool left = std::ranges::any_of(
+          exceptions().parts, [&](const std::string& part) { return line.find(part) != std::string::npos; });
+      if (!data && !left && report::chinese_marks(line) != line) wrong.insert(each.name + ": " + line);
+    }
+  }
+  for (const auto& line : wrong) ADD_FAILURE() << line;
+}
+
+TEST(Chinese, LeavesNoEnglishWordInHelp) {
   std::set<std::string> left;
   const auto look = [&](std::string_view path) {
-    const auto text = command::help_text(path, 100, true);
+    const auto text = command::help_text(path, 200, true);
     ASSERT_TRUE(text) << path;
     left.merge(english_lines(*text));
   };
   look("");
   for (const auto* command : command::registry()) look(command->path);
   for (const auto& word : command::prompt_words()) look(word.name);
+  for (const auto& line : left) ADD_FAILURE() << line;
+}
+
+/// What Tab tells of each word, behind these lines.
+TEST(Chinese, LeavesNoEnglishWordInWhatCompletionTells) {
+  RecordingConsole console;
+  Shell::Options options;
+  options.drive_folders = {golden_source() / "eds"};
+  options.clock = sim::SimBus::Clock::virtual_time;
+  options.defaults.bus = "sim:gsd600@1";
+  options.defaults.drive = "gsd600";
+  options.defaults.chinese = true;
+  Shell shell(console, std::move(options));
+  std::vector<std::string> lines{"", "use ", "drive ", "bus ", "read -b ", "read -n ", "home ", "mode "};
+  for (const auto* command : command::registry()) {
+    lines.push_back(std::string(command->path) + " ");
+    lines.push_back(std::string(command->path) + " -");
+  }
+  std::set<std::string> left;
+  for (const auto& line : lines) {
+    const auto offer = complete(line, shell);
+    left.merge(english_lines(offer.note));
+    for (const auto& one : offer.candidates) left.merge(english_lines(one.hint));
+  }
+  for (const auto& line : left) ADD_FAILURE() << line;
+}
+
+constexpr const char* kFamilies[] = {"cia402", "da200", "dm", "gsd600", "sv2", "ts"};
+
+/// Names, labels, notes, remedies and topics of every family.
+TEST(Chinese, LeavesNoEnglishWordInWhatIsToldOfTheFamilies) {
+  std::filesystem::current_path(golden_source());
+  std::set<std::string> left;
+  const auto look = [&](std::string_view family, const std::string& text) {
+    for (const auto& line : english_lines(text)) left.insert(std::string(family) + ": " + line);
+    if (report::chinese_marks(text) != text) left.insert(std::string(family) + ": marks of " + text);
+  };
+  for (const auto* family : kFamilies) {
+    const auto profile = drive::load_profile(family, std::vector{golden_source() / "eds"});
+    ASSERT_TRUE(profile) << profile.error().message;
+    const auto names = show::chinese_names(*profile);
+    for (const auto& [english, chinese] : names) look(family, chinese);
+    const auto has = [&](const std::string& name, const std::string& chinese) {
+      if (report::chinese_marks(chinese) != chinese)
+        left.insert(std::string(family) + ": marks of " + chinese);
+      const bool plain = name.empty() || !chinese.empty() || english_words(name).empty();
+      if (!plain) left.insert(std::string(family) + ": no Chinese of " + name);
+    };
+    // What the English corrects, it corrects by its index: `60E0h`.
+    const auto names_the_same = [&](const std::string& english, const std::string& chinese) {
+      static const std::regex kIndex("[0-9A-F]{4}h");
+      for (std::sregex_iterator at(english.begin(), english.end(), kIndex), end; at != end; ++at)
+        if (chinese.find(at->str()) == std::string::npos)
+          left.insert(std::string(family) + ": no " + at->str() + " in " + chinese);
+    };
+    for (const auto& object : profile->dictionary.objects())
+      for (const auto& entry : object.entries) {
+        if (profile->parameter(entry.address) != nullptr) continue;
+        has(entry.name, entry.name_zh);
+        has(entry.note, entry.note_zh);
+        names_the_same(entry.note, entry.note_zh);
+        for (const auto& label : entry.labels) has(label.label, label.label_zh);
+      }
+    for (const auto& parameter : profile->parameters) {
+      has(parameter.name, parameter.name_zh);
+      has(parameter.note, parameter.note_zh);
+      names_the_same(parameter.note, parameter.note_zh);
+      for (const auto& label : parameter.labels) has(label.label, label.label_zh);
+    }
+    for (const auto& fault : profile->faults) {
+      has(fault.name, fault.name_zh);
+      has(fault.check, fault.check_zh);
+      names_the_same(fault.check, fault.check_zh);
+    }
+  }
   for (const auto& line : left) ADD_FAILURE() << line;
 }
 
@@ -122,7 +177,7 @@ std::string foreign_chinese(std::string_view text) {
     while (end < text.size() && static_cast<unsigned char>(text[end]) >= 0xE3) end += 3;
     end = std::min(end, text.size());
     const auto words = std::string(text.substr(at, end - at));
-    if (!words.empty() && english_data().find(words) == std::string::npos) return words;
+    if (!words.empty() && foreign_data().find(words) == std::string::npos) return words;
     at = std::max(end, at + 1);
   }
   return {};
@@ -175,9 +230,11 @@ TEST(Chinese, QuestionsAreAskedInIt) {
   Shell shell(console, std::move(options));
   EXPECT_EQ(LineRunner(shell).run("jog 60rpm --for 1s -n 1 -d gsd600 --turn 131072 --lang zh"), 8);
   ASSERT_EQ(console.questions.size(), 1U);
-  EXPECT_EQ(english_in(console.questions.front()), "");
+  EXPECT_EQ(english_lines(console.questions.front()), std::set<std::string>());
   EXPECT_NE(console.questions.front().find("节点 1"), std::string::npos) << console.questions.front();
   EXPECT_NE(console.err_text.find("错误："), std::string::npos) << console.err_text;
+  EXPECT_NE(console.err_text.find("正常     状态："), std::string::npos) << console.err_text;
+  EXPECT_NE(console.err_text.find("备注     最大速度："), std::string::npos) << console.err_text;
 }
 
 }  // namespace

@@ -6,10 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
+#include "cli/line_runner.hpp"
 #include "cli/shell.hpp"
+#include "cli/terminal/prompt_words.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -47,6 +50,8 @@ TEST_F(Completing, SaysBesideAWordWhatItIs) {
   EXPECT_EQ(hint("param get Pn021", "Pn0214"), "Speed loop gain 1");
   shell.defaults().chinese = true;
   EXPECT_EQ(hint("param get Pn021", "Pn0214"), "速度环增益 1");
+  EXPECT_EQ(hint("param ", "search"), "按词查找面板参数，中文或英文");
+  shell.defaults().chinese = false;
   EXPECT_EQ(hint("param ", "search"), "Find panel parameters by words, in English or Chinese");
   EXPECT_TRUE(hint("read --ty", "--type").starts_with("data type")) << hint("read --ty", "--type");
   EXPECT_EQ(hint("un", "undo"), "Put back what the last `param set` or `write` replaced");
@@ -59,14 +64,44 @@ TEST_F(Completing, OffersWhatAValueMayBe) {
   EXPECT_TRUE(offers_word("mode ", "pv"));
   EXPECT_TRUE(offers_word("mode 3", "3"));
   EXPECT_TRUE(offers_word("home 3", "35"));
-  EXPECT_EQ(hint("param set Pn0000 ", "Position\\ mode"), "0 Position mode");
+  EXPECT_EQ(hint("param set Pn0000 ", "0"), "Position mode");
+  EXPECT_EQ(hint("param set Pn0000 Posi", "Position\\ mode"), "0 Position mode");
+  EXPECT_EQ(hint("mode ", "pv"), "3 Profile velocity (pv)");
   EXPECT_EQ(hint("param set Pn0000 0", "0"), "Position mode");
-  EXPECT_TRUE(offers_word("param set Pn0000=", "Pn0000=Position\\ mode"));
+  EXPECT_TRUE(offers_word("param set Pn0000=", "Pn0000=0"));
   EXPECT_TRUE(offers_word("param set Pn0000=1 Pn021", "Pn0214"));
   EXPECT_TRUE(offers_word("write modes_of_operation 3", "3"));
   EXPECT_NE(complete("param set Pn0214 ", shell).note.find("Hz"), std::string::npos);
   EXPECT_TRUE(complete("param set Pn0214 ", shell).candidates.empty());
   EXPECT_TRUE(offers_word("param set Pn0214 40", "40Hz"));
+}
+
+TEST_F(Completing, OffersEachMethodByItsNumberThoughSeveralHaveOneName) {
+  for (const bool chinese : {false, true}) {
+    shell.defaults().chinese = chinese;
+    const auto methods = complete("home ", shell).candidates;
+    for (const auto* number : {"1", "4", "5", "6", "35"})
+      EXPECT_TRUE(std::any_of(methods.begin(), methods.end(), [&](const Candidate& one) {
+        return one.word == number && !one.hint.empty();
+      })) << number;
+  }
+}
+
+TEST_F(Completing, TakesTheFamilyOfANodeFromTheCabinetFileAsTheLineDoes) {
+  const auto file = fs::temp_directory_path() / ("family-" + std::to_string(::getpid()) + ".toml");
+  std::ofstream(file)
+      << "[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.lift]\nbus = \"main\"\nnode = 1\nfamily = "
+         "\"gsd600\"\n";
+  shell.defaults().cabinet = file.string();
+  shell.defaults().drive = "dm";
+  shell.defaults().bus = "main";
+  EXPECT_TRUE(offers_word("param get Pn021", "Pn0214"));
+  EXPECT_EQ(prompt_text(shell).text, "servoctl main node 1 gsd600> ");
+  ASSERT_EQ(LineRunner(shell).run("drive dm"), 0);
+  EXPECT_NE(console.err_text.find("the lines for 1 go on with gsd600, as the cabinet file says"),
+            std::string::npos)
+      << console.err_text;
+  fs::remove(file);
 }
 
 TEST_F(Completing, OffersUnitsBehindANumber) {

@@ -44,6 +44,7 @@ LINES = [
     ("-b sim:gs~1 -n 1 param get pn0214~", "-b|sim:gsd600@1|-n|1|param|get|Pn0214"),
     ("scan --bus=coe:si~sv~1", "scan|--bus=coe:sim:sv2@1"),
     ("scan -b 'sim:gsd600@1?st~mem~", "scan|-b|sim:gsd600@1?state=memory.bin"),
+    ("scan -b sim:gsd600@1~st~mem~", "scan|-b|sim:gsd600@1?state=memory.bin"),
     ("scan -b replay:mem~", "scan|-b|replay:memory.bin"),
     # quotes and blanks
     ("-d gsd600 param set 'Pn0000=Position m~", "-d|gsd600|param|set|Pn0000=Position mode"),
@@ -55,6 +56,9 @@ LINES = [
     ("-d my\\ sh~ objects", "-d|my sheet.eds|objects"),
     ("-d 'my sh~ objects", "-d|my sheet.eds|objects"),
     ("-d evil/~ objects", "-d|evil/$(touch owned)'\".eds|objects"),
+    # variables of the shell: the word is looked at with its value, and stays as it was typed
+    ("-b $CELL -n 1 param get pn0214~", "-b|sim:gsd600@1|-n|1|param|get|Pn0214"),
+    ('-b "$CELL" -n 1 -d $FAMILY param get pn0214~', "-b|sim:gsd600@1|-n|1|-d|gsd600|param|get|Pn0214"),
     # files, where any may stand
     ("backup my\\ f~", "backup|my file.json"),
     ("backup 'my f~", "backup|my file.json"),
@@ -74,7 +78,7 @@ LINES = [
     ("--cabinet other/c.toml status -n cra~", "--cabinet|other/c.toml|status|-n|crane"),
 ]
 
-# fish reads a `?` that is in no quotes as a wildcard, whoever typed it.
+# fish reads a `?` that is in no quotes as a wildcard, whoever typed it; what Tab puts there is quoted.
 NOT_IN_FISH = [("scan -b sim:gsd600@1?st~mem~", "scan|-b|sim:gsd600@1?state=memory.bin")]
 
 # What is typed, and what the list then says: words with what they are.
@@ -88,6 +92,16 @@ LISTS = [
     ("scan -b 'sim:gsd600@1?", r"delay=\W+time until an answer"),
     ("-d gsd600 --lang zh param get Pn021", r"Pn0214\W+速度环增益 1"),
     ("read -n 9 ", r"-d FAMILY before it tells"),
+]
+
+# What stands above the lists of zsh, in the order of the headings.
+HEADINGS_OF_ZSH = [
+    ("test ", r"commands and groups:"),
+    ("jog ", r"nodes and axes:[\s\S]*feeder"),
+    ("-d gsd600 param get Pn02", r"panel parameters:"),
+    ("-d gsd600 read 0x604", r"objects:"),
+    ("read --t", r"options:"),
+    ("read -n 1 --lang ", r"values:"),
 ]
 
 
@@ -160,7 +174,7 @@ class Shell:
 
 def shells():
     bash = ("bash", "--norc", "--noprofile", "-i")
-    ready = "PS1='READ''Y> '"
+    ready = "CELL=sim:gsd600@1; FAMILY=gsd600; PS1='READ''Y> '"
     yield lambda: Shell("bash", *bash, set_up=f". {completions}/servoctl.bash; {ready}", tabs=2)
     if os.path.exists(bash_helpers):
         yield lambda: Shell("bash with bash-completion", *bash,
@@ -174,7 +188,7 @@ def shells():
         print("SKIP zsh is not installed")
     if shutil.which("fish"):
         yield lambda: Shell("fish", "fish", "--no-config", "-i", tabs=1, set_up=f"source {completions}/servoctl.fish; "
-                            "set -g fish_autosuggestion_enabled 0; function fish_prompt; echo 'READ''Y> '; end")
+                            "set -g CELL sim:gsd600@1; set -g FAMILY gsd600; set -g fish_autosuggestion_enabled 0; function fish_prompt; echo 'READ''Y> '; end")
     else:
         print("SKIP fish is not installed")
 
@@ -184,6 +198,11 @@ def try_shell(shell):
         shell.run(typed, words)
     for typed, pattern in LISTS:
         shell.lists(typed, pattern)
+    if shell.name == "zsh":
+        shell.terminal.type("zstyle ':completion:*:descriptions' format '%d:'; zstyle ':completion:*' group-name ''\r")
+        shell.look("READY> ")
+        for typed, pattern in HEADINGS_OF_ZSH:
+            shell.lists(typed, pattern)
     shell.run("scan > out~; cat output.txt", "scan")
     shell.set("SERVOCTL_DRIVE", "gsd600")
     shell.run("param get pn0214~", "param|get|Pn0214")

@@ -141,9 +141,9 @@ TEST_F(ForeignInput, PutsNoCobIdOfAnotherServiceIntoADrive) {
 TEST_F(ForeignInput, TakesTheRuleForSyncTimeEmcyAndStoredCopiesAsWell) {
   refused("write 0x1005 0x601", "0x1005", "belongs to SDO");
   refused("write 0x1014 0x000", "0x1014", "belongs to NMT");
-  refused("param set Pn0118 0", "0x2000:77", "out of range: 512");
-  refused("param set Pn0121 0", "0x2000:7A", "a reserved service");
-  refused("param set Pn0118 0x600", "0x2000:77", "belongs to SDO");
+  refused("param set Pn0118 0", "0x2000:77h", "out of range: 512");
+  refused("param set Pn0121 0", "0x2000:7Ah", "a reserved service");
+  refused("param set Pn0118 0x600", "0x2000:77h", "belongs to SDO");
   EXPECT_EQ(run("param set Pn0118 0x80000600"), 0) << "not valid, so not an assigned CAN-ID";
   use("sim:dm@1", "dm");
   refused("write 0x1012 0x80000701", "0x1012", "error control");

@@ -13,6 +13,7 @@ import threading
 import time
 
 from checks import check, finish
+from pty_terminal import Terminal, failures
 
 servoctl = sys.argv[1]
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
@@ -35,8 +36,8 @@ def expect(bus, words, code, *texts):
 class Gateway:
     """The program as the server."""
 
-    def __init__(self, *options):
-        self.process = subprocess.Popen([servoctl, "gateway", "-b", "sim:gsd600@1,gsd600@2", "--listen", path, *options], env=env,
+    def __init__(self, *options, bus="sim:gsd600@1,gsd600@2"):
+        self.process = subprocess.Popen([servoctl, "gateway", "-b", bus, "--listen", path, *options], env=env,
                                         stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.process.stdout.readline()
 
@@ -67,6 +68,13 @@ try:
     expect(local, ["restore", saved, "--yes", *node], 0)
     expect(local, ["param", "get", "Pn0214", *node], 0, "45")
     expect(local, ["verify", saved, *node], 0)
+    # The prompt shows what was heard through it.
+    prompt = Terminal(servoctl, "-b", local, "-n", "1", "-d", "gsd600", state=folder, size=(24, 200))
+    prompt.see(r"node 1 gsd600> ")
+    prompt.type("read 0x6041\r")
+    prompt.see(r"node 1 gsd600 \[switch on disabled\]> ")
+    prompt.type("\x04")
+    check(f"the prompt ends: {failures}", prompt.exit_code() == 0 and not failures)
     # NMT goes, and says what it knows.
     expect(local, ["nmt", "start", "-n", "1"], 0)
     expect(local, ["nmt", "stop", "-n", "all"], 0)
@@ -100,11 +108,54 @@ finally:
     gateway.end()
 
 
+# Nor by a parameter that energises a motor without 6040h, whichever command writes it.
+with open(os.path.join(folder, "forced"), "w") as lines:
+    lines.write(f"param set Pn0600=1 --yes -n 1\nbackup {folder}/forced.json -n 1\n")
+made = subprocess.run([servoctl, "-b", "sim:gsd600@1", "-d", "gsd600", "run", lines.name], env=env, stdin=subprocess.DEVNULL,
+                      capture_output=True, text=True)
+check(f"a backup with an input that is forced on\n{made.stderr}", made.returncode == 0)
+gateway = Gateway("--allow", "write", "--yes", bus="sim:ts@1,gsd600@2")
+try:
+    ts = ("-n", "1", "-d", "ts", "--yes")
+    expect(local, ["param", "set", "Fn_00=1", "Fn_33=500", "Fn_38=1", "--unlock", *ts], 8, "without the controlword", "nobody stops the motor")
+    for words in (["param", "set", "Fn_20C=1"], ["param", "set", "Fn_20D=1"], ["write", "0x2038", "1"]):
+        expect(local, [*words, *ts], 8, "without the controlword", "nobody stops the motor")
+    expect(local, ["write", "0x2038", "1", "--type", "u16", "-n", "1", "--yes"], 8, "without its family", "-d FAMILY")
+    expect(local, ["write", "0x2038", "0", "--type", "u16", "-n", "1", "--yes"], 0)
+    held = json.loads(run(local, "param", "get", "Fn_33", "Fn_38", "Fn_20C", "Fn_20D", "--json", *ts[:4]).stdout)["result"]
+    check(f"nothing of it was written: {held}", [value["raw"] for value in held] == [0, 0, 0, 0])
+    expect(local, ["param", "set", "Fn_38=0", "Fn_33=500", *ts], 0)
+    expect(local, ["restore", f"{folder}/forced.json", "-n", "2", "-d", "gsd600", "--yes", "--force"], 8, "without the controlword")
+    expect(local, ["param", "get", "Pn0600", "-n", "2", "-d", "gsd600", "--json"], 0, '"raw":0')
+finally:
+    gateway.end()
+
+# The other way round: what a client of the gateway energised so does not stay when it goes.
+gateway = Gateway("--allow", "write", "--yes", "-d", "ts", bus="sim:ts@1")
+try:
+    with socket.socket(socket.AF_UNIX) as client:
+        client.connect(path)
+        client.settimeout(10)
+        for number, line in enumerate(("1 w 0x220C 0 u16 1", "1 w 0x2038 0 u16 1"), 1):
+            client.sendall(f"[{number}] {line}\r\n".encode())
+            check(f"a client writes {line}", client.recv(100) == f"[{number}] OK\r\n".encode())
+        expect(local, ["read", "0x2038", "-n", "1", "-d", "ts", "--json"], 0, '"raw":1')
+    for _ in range(200):
+        answer = run(local, "read", "0x2038", "0x220E", "-n", "1", "-d", "ts", "--json")
+        if '"raw":0' in answer.stdout:
+            break
+        time.sleep(0.05)
+    check(f"it is disabled, and its path stopped\n{answer.stdout}",
+          [value["raw"] for value in json.loads(answer.stdout)["result"]] == [0, 1])
+finally:
+    gateway.end()
+
+
 class Scripted:
     """Answers each line by what `answer` makes of its number and its words."""
 
-    def __init__(self, answer):
-        self.answer = answer
+    def __init__(self, answer, sets=lambda words: "OK\r\n"):
+        self.answer, self.sets = answer, sets
         self.lines = []
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.bus = f"gateway://127.0.0.1:{self.listener.getsockname()[1]}"
@@ -123,7 +174,7 @@ class Scripted:
             for line in client.makefile("r", newline="\r\n"):
                 self.lines.append(line.strip())
                 number, *words = line.split()
-                text = "OK\r\n" if words[0] == "set" else self.answer(words)
+                text = self.sets(words) if "set" in words else self.answer(words)
                 if text is None:
                     client.shutdown(socket.SHUT_RDWR)
                     return
@@ -157,6 +208,77 @@ for name, text, code, words in CASES:
     check(f"what was asked: {scripted.lines}", scripted.lines[1].endswith("] 1 4 r 0x1017 0 d"))
     scripted.listener.close()
 
+# lely-core has a timeout for each network, and no network is set: it is told in front of it.
+scripted = Scripted(lambda _: "6AM=\r\n",
+                    lambda words: "OK\r\n" if words[0] == "1" else "ERROR: 104 (No default net set)\r\n")
+expect(scripted.bus, [*READ, "--timeout", "250ms"], 0, "1000")
+check(f"the timeout is told: {scripted.lines}",
+      [line.split(" ", 1)[1] for line in scripted.lines[:3]] == ["set sdo_timeout 500", "1 set sdo_timeout 500", "1 set sdo_timeout 250"])
+scripted.listener.close()
+
+# A gateway that is killed, or whose cable is pulled, in the middle: an error at once, no file that looks whole, and at the prompt the
+# next line connects anew.
+class Relay:
+    """Between a client and a gateway: slow, and cut after so many lines."""
+
+    def __init__(self, lines):
+        self.left, self.asked = lines, 0
+        self.listener = socket.create_server(("127.0.0.1", 0))
+        self.bus = f"gateway://127.0.0.1:{self.listener.getsockname()[1]}"
+        threading.Thread(target=self.accept, daemon=True).start()
+
+    def accept(self):
+        while True:
+            try:
+                client, _ = self.listener.accept()
+            except OSError:
+                return
+            threading.Thread(target=self.serve, args=(client,), daemon=True).start()
+
+    def serve(self, client):
+        server = socket.socket(socket.AF_UNIX)
+        try:
+            server.connect(path)
+            answers = server.makefile("r", newline="\r\n")
+            for line in client.makefile("r", newline="\r\n"):
+                self.asked += 1
+                if self.left == 0:
+                    break
+                self.left -= 1
+                server.sendall(line.encode())
+                client.sendall(answers.readline().encode())
+        except OSError:
+            pass
+        server.close()
+        try:
+            client.shutdown(socket.SHUT_RDWR)
+        except OSError:
+            pass
+        client.close()
+
+
+gateway = Gateway("--allow", "write", "--yes")
+try:
+    for words in (["backup", os.path.join(folder, "cut.json")], ["read", *["0x6041"] * 200], ["watch", "0x6041", "--for", "20s"]):
+        relay = Relay(60 if words[0] != "watch" else 20)
+        begin = time.monotonic()
+        answer = expect(relay.bus, [*words, "-n", "1", "-d", "gsd600"], 3, relay.bus.split("//")[1])
+        check(f"why: {answer.stderr}", "closed the connection" in answer.stderr or "is lost" in answer.stderr)
+        check(f"{words[0]} ends at once: {time.monotonic() - begin:.1f} s, {relay.asked} lines", time.monotonic() - begin < 15 and relay.asked <= 62)
+        relay.listener.close()
+    check("a backup that was cut is no file", not os.path.exists(os.path.join(folder, "cut.json")))
+    relay = Relay(30)
+    with open(os.path.join(folder, "lines"), "w") as lines:
+        lines.write("on-error continue\n" + "read 0x6041 -n 1\n" * 40)
+    answer = run(relay.bus, "run", lines.name)
+    check(f"the next line connects anew\n{answer.stdout[-400:]}{answer.stderr}",
+          answer.stderr.count("closed the connection") >= 1 and answer.returncode == 3)
+    relay.left = 1000
+    expect(relay.bus, ["read", "0x6041", "-n", "1"], 0)
+    relay.listener.close()
+finally:
+    gateway.end()
+
 # A write has its bytes as they go to the drive, and is never repeated.
 scripted = Scripted(lambda words: "OK\r\n" if words[2] == "w" else "ZAA=\r\n")
 expect(scripted.bus + "/2", ["write", "0x1017", "100", "-n", "4", "--type", "u16"], 0)
@@ -172,4 +294,24 @@ expect(f"gateway://127.0.0.1:{silent.getsockname()[1]}", ["scan"], 3, "does not 
 check("is given up", time.monotonic() - started < 6)
 for wrong in ("gateway:", "gateway:x", "gateway://", "gateway://h:0", "gateway://h/x"):
     expect(wrong, ["scan"], 2)
+# One that hangs in the midst of a backup, its connection not closed: told once, and the next line connects anew.
+gateway = subprocess.Popen([servoctl, "gateway", "-b", "sim:gsd600@1?delay=5ms", "--listen", path], env=env, stdin=subprocess.DEVNULL,
+                           stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+gateway.stdout.readline()
+try:
+    backup = subprocess.Popen([servoctl, "-b", local, "-n", "1", "-d", "gsd600", "backup", os.path.join(folder, "cut.json")], env=env,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    time.sleep(0.7)
+    check("the backup is under way", backup.poll() is None)
+    gateway.send_signal(signal.SIGSTOP)
+    begun = time.monotonic()
+    said = backup.communicate(timeout=60)[1]
+    check(f"a gateway that hangs is told once, after {time.monotonic() - begun:.1f} s\n{said}",
+          backup.returncode == 3 and said.count("does not answer any more") == 1 and said.count("error:") == 1 and time.monotonic() - begun < 13)
+    check("no file is made of half a backup", not os.path.exists(os.path.join(folder, "cut.json")))
+    gateway.send_signal(signal.SIGCONT)
+    expect(local, ["read", "0x1000", "-n", "1"], 0, "0x00020192")
+finally:
+    gateway.kill()
+    gateway.communicate()
 finish()

@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -81,8 +82,11 @@ struct PlayedGolden {
 };
 
 /// Runs the lines of a case, each with these options behind it, and tells all that came of them.
-inline PlayedGolden play_golden(const GoldenCase& c, const std::string& options_behind) {
+/// `prepare` says what else the console is.
+inline PlayedGolden play_golden(const GoldenCase& c, const std::string& options_behind,
+                                const std::function<void(RecordingConsole&)>& prepare = {}) {
   RecordingConsole console;
+  if (prepare) prepare(console);
   Shell::Options options;
   options.drive_folders = {golden_source() / "eds", golden_source() / "tests/cli/data/drives"};
   options.clock = sim::SimBus::Clock::virtual_time;

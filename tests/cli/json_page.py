@@ -1,7 +1,7 @@
 """The part of docs/json.md that is made from docs/schema/."""
 import textwrap
 
-from json_schemas import Schemas
+from json_schemas import FILES, Schemas
 
 WIDTH = 140
 MOST_VALUES = 20  # The commands are counted out in the overview.
@@ -32,6 +32,7 @@ class Page:
     def __init__(self, folder):
         self.schemas = Schemas(folder)
         self.defs = self.schemas.files["defs.schema.json"]["$defs"]
+        self.results = [each for each in self.schemas.names() if "." not in each and each not in ("envelope", "defs", *FILES)]
         self.records = []  # Names of the records that tables have named, in that order.
 
     def resolved(self, file, schema):
@@ -53,6 +54,9 @@ class Page:
         """The type in words: `list of [reading](#reading)`, `text, null`."""
         inner_file, inner, record = self.resolved(file, schema)
         options = [each for each in inner.get("anyOf", []) if not is_null(each)]
+        if schema.get("$ref", "").partition("#")[0].removesuffix(".schema.json") in self.results:
+            name = schema["$ref"].partition("#")[0].removesuffix(".schema.json")
+            return f"[as its `result`](#{name})" if "#" not in schema["$ref"] else f"[record of its `result`](#{name})"
         if "$ref" in schema and not schema["$ref"].startswith(("#", "defs")):
             name = schema["$ref"].removesuffix(".schema.json")
             return f"[sample](#{name.removesuffix('.sample')}-sample)"
@@ -203,6 +207,10 @@ class Page:
                  wrapped("With `-o jsonl` these commands print one record for each sample, and the document, whose `result` does not "
                          "repeat the samples, comes last."),
                  self.sections("###", samples, "Schema:")]
+        parts += ["## Files",
+                  wrapped("What is written to files that other programs may read. `--tests` of `report` reads documents of `test …`, as they are "
+                          "described above."),
+                  self.sections("###", [(name, name.replace("-", " ")) for name in FILES], "Schema:")]
         records = []
         for name in self.records:  # Grows while records name others.
             records.append(self.record(name))

@@ -9,6 +9,21 @@ except ImportError:
 
 DIALECT = jsonschema.Draft202012Validator
 ANNOTATIONS = ("title", "description", "$comment")
+# Files that the program writes and reads: their schema, and the key that tells them apart.
+FILES = {"backup-file": "servoctl_backup", "restore-journal": "servoctl_journal", "address-journal": "servoctl_address_plan",
+         "report-file": "servoctl_report", "pdo-file": "format"}
+LEFT_OUT = "a person may leave it out of the file: `pdo apply` leaves it as it is"
+# Keys that come and go, and why; every other key of a record is always there. Beside them `axis` stands in each record with `node`
+# where the line names axes of a cabinet file, and a frame has the keys of its service.
+OPTIONAL = {
+    "envelope.schema.json#/properties/error": "exactly where `ok` is false",
+    "scan.schema.json#/anyOf/0/items/properties/bus": "where the line is for several buses: nothing else tells the rows apart",
+    "scan.schema.json#/anyOf/1/items/properties/bus": "where the line is for several buses: nothing else tells the rows apart",
+    "lss-scan.schema.json#/anyOf/0/items/properties/bus": "where the line is for several buses: nothing else tells the rows apart",
+    "pdo-file.schema.json#/properties/family": "a person may leave it out of the file",
+    **{f"pdo-file.schema.json#/properties/pdo/items/properties/{key}": LEFT_OUT
+       for key in ("cob_id", "valid", "type", "inhibit_us", "event_ms", "sync_start", "map")},
+}
 
 
 def no_twins(pairs):
@@ -50,6 +65,9 @@ class Schemas:
             if schema.get("$id") != name:
                 out.append(f"{name}: its $id is {schema.get('$id')}")
             out += [f"{name}: {text}" for text in weaknesses(schema, "")]
+        loose = [place for name, schema in self.files.items() for place in loose_keys(name, "", schema)]
+        out += [f"{place}: is neither required nor in OPTIONAL" for place in loose if place not in OPTIONAL]
+        out += [f"{place}: stands in OPTIONAL, and is none" for place in OPTIONAL if place not in loose]
         return out
 
     def target(self, file, reference):
@@ -162,6 +180,23 @@ def weaknesses(schema, place):
     for key, each in schema.items():
         out += weaknesses(each, f"{place}/{key}")
     return out
+
+
+def loose_keys(file, place, schema):
+    """Keys that no record has to have: they are not required, nor where a condition holds."""
+    if isinstance(schema, list):
+        for i, each in enumerate(schema):
+            yield from loose_keys(file, f"{place}/{i}", each)
+    if not isinstance(schema, dict):
+        return
+    if "object" in schema.get("type", []) and "properties" in schema:
+        always = set(schema.get("required", []))
+        always.update(*(each["then"].get("required", []) for each in schema.get("allOf", [])))
+        for key, each in schema["properties"].items():
+            if key not in always and not each.get("$ref", "").endswith("/axis"):
+                yield f"{file}#{place}/properties/{key}"
+    for key, each in schema.items():
+        yield from loose_keys(file, f"{place}/{key}", each)
 
 
 def choices(file, place, schema):

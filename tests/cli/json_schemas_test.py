@@ -13,14 +13,15 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import warnings
 
-from json_schemas import Schemas, jsonschema, read, samples_and_documents
+from json_schemas import FILES, Schemas, jsonschema, read, samples_and_documents
 
 servoctl, source = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 BUSES = [("sim:da200@1", "da200"), ("sim:dm@1", "dm"), ("sim:gsd600@1", "gsd600"), ("sim:sv2@1", "sv2"), ("sim:ts@1", "ts"),
          ("coe:sim:sv2@1", "sv2"), ("modbus:sim:ts@1", "ts")]  # The last is slow: one request at a time.
-# What needs something that is not in every machine, and why; the first words of a place.
+# What needs something that is not in every machine, and why; the first words of a place. Real.field holds it against the schemas.
 NOT_HERE = {
     "bus-status.schema.json#": "a CAN interface of the kernel",
     "bus-up.schema.json#": "a CAN interface of the kernel, and the right to change it",
@@ -37,6 +38,9 @@ CABINETS = {
                   '[axis.lift]\nbus = "main"\nnode = 1\nfamily = "gsd600"\n[axis.feed]\nbus = "ring"\nnode = 1\nfamily = "sv2"\n',
     "rings.toml": '[bus.one]\nurl = "coe:sim:sv2@1"\n[bus.two]\nurl = "coe:sim:sv2@1,sv2@2"\n'
                   '[axis.lift]\nbus = "one"\nnode = 1\nfamily = "sv2"\n',
+    "settled.toml": '[bus.main]\nurl = "sim:gsd600@1"\n[axis.lift]\nnode = 1\nfamily = "gsd600"\nturn = 131072\nper_turn = "20 mm"\n'
+                    'limits.speed = "600rpm"\nheartbeat = "100ms"\npdos = "pp"\nparameters.Pn0214 = "45Hz"\n',
+    "logo.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="1" height="1"/>',
     "two-buses.toml": '[bus.main]\nurl = "sim:gsd600@1"\n[bus.other]\nurl = "sim:sv2@255?lss"\n'
                       '[axis.lift]\nbus = "main"\nnode = 1\nfamily = "gsd600"\n',
 }
@@ -88,7 +92,7 @@ def check_registry():
     commands = {command.replace(" ", "-") for command in registry()}
     if len(commands) < 90:
         sys.exit(f"only {len(commands)} commands are in the help: the test itself is broken")
-    described = {name.removesuffix(".sample") for name in schemas.names()} - {"envelope", "defs"}
+    described = {name.removesuffix(".sample") for name in schemas.names()} - {"envelope", "defs", *FILES}
     for name in sorted(commands - described):
         problems.append(f"docs/schema/ has no {name}.schema.json: it describes the result of a command")
     for name in sorted(described - commands):
@@ -157,6 +161,50 @@ def check_lines(folder, env):
     return len(lines)
 
 
+def check_cut_off(folder, env):
+    """What a restore leaves whose drive fell silent while it was written to, and a plan of addresses whose drive was not
+    switched off and on: the journals."""
+    def in_lines(bus, family, *lines):
+        return subprocess.run([servoctl, "-", "-n", "1", "-d", family, "-b", bus], env=env, cwd=folder, text=True, input="\n".join(lines),
+                              capture_output=True, timeout=120)
+
+    in_lines("sim:gsd600@1", "gsd600", "param set Pn0214=45Hz Pn0202=33 Pn0215=900 Pn0203=20 Pn0204=10", "backup cut.json --only changed")
+    # Killed when it has begun to write.
+    restore = subprocess.Popen([servoctl, "restore", "cut.json", "-y", "-n", "1", "-d", "gsd600", "-b", "sim:gsd600@1?delay=50ms"], env=env,
+                               cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    while not os.path.exists(os.path.join(folder, "cut.json.before-node-1.json.journal")) and restore.poll() is None:
+        time.sleep(0.01)
+    restore.kill()
+    restore.wait()
+    # A report with every kind of test in it.
+    turn = " --turn 131072 --limit 600rpm"
+    for each in (f"all 60rpm --for 1s --tolerance 50 --stop-within 5s --repeat 2{turn}",  # It may end before it comes to its home.
+                 f"home 35{turn}", "io --for 100ms"):
+        tested = run(f"test {each} -n 1 -d gsd600 -y -b sim:gsd600@1", folder, env)[1]
+        with open(os.path.join(folder, f"{each.split()[0]}.json"), "w", encoding="utf-8") as out:
+            out.write("\n".join(tested))
+    run("report tested.json --tests all.json --tests home.json --tests io.json -n 1 -d gsd600 -b sim:gsd600@1", folder, env)
+    with open(os.path.join(folder, "plan.csv"), "w", encoding="utf-8") as out:
+        out.write("node,new\n1,5\n")
+    in_lines("sim:ts@1", "ts", "address --plan plan.csv -n all --unlock --wait 100ms -y")
+
+
+def check_files(folder):
+    """Every file that was written there: what it is tells its first key."""
+    global documents
+    met = set()
+    files = glob.glob(os.path.join(folder, "**/*.js*"), recursive=True) + glob.glob(os.path.join(folder, "**/*.journal"), recursive=True)
+    for file in sorted(each for each in files if not each.startswith(os.path.join(folder, "tests"))):  # Those were written by hand.
+        with open(file, encoding="utf-8") as text:
+            document = read(text.read())
+        for name, key in FILES.items():
+            if next(iter(document)) == key:
+                documents += 1
+                met.add(name)
+                problems.extend(f"{os.path.basename(file)}: {name}: {text}" for text in schemas.errors(name, document))
+    problems.extend(f"no {name} was written here" for name in sorted(set(FILES) - met))
+
+
 def check_until_ended(words, env):
     """A command that goes on until Ctrl-C: its sample when it has begun, its document when it has ended."""
     with subprocess.Popen([servoctl, *words, "-o", "jsonl"], env=env, cwd=env["HOME"], stdout=subprocess.PIPE, text=True) as process:
@@ -215,6 +263,8 @@ with tempfile.TemporaryDirectory() as home:
         with open(os.path.join(home, title), "w", encoding="utf-8") as out:
             out.write(content)
     ran = check_lines(home, environment(home))
+    check_cut_off(home, environment(home))
+    check_files(home)
     check_until_ended(["sim", "gsd600@1", "-b", f"local:json-schemas-{os.getpid()}"], environment(home))
     check_until_ended(["gateway", "--listen", os.path.join(home, "socket"), "-b", "sim:gsd600@1"], environment(home))
 check_coverage()

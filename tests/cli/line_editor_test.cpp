@@ -192,7 +192,7 @@ TEST_F(LineEditing, ArrowsGoThroughTheHistoryAndBackToWhatWasBegun) {
 TEST_F(LineEditing, NoLineOfAPasteRunsByItself) {
   EXPECT_EQ(type("\x1B[200~nmt reset\ny\n\n速度\n\x1B[201~"), LineEditor::Step::goes_on);
   EXPECT_EQ(editor.text(), "nmt reset");
-  EXPECT_TRUE(screen.row(1).starts_with("(2 more pasted")) << screen.row(1);
+  EXPECT_TRUE(screen.row(1).starts_with("(2 more lines")) << screen.row(1);
   EXPECT_EQ(type("\r"), LineEditor::Step::line);
   editor.begin();
   EXPECT_EQ(editor.text(), "y");

@@ -93,6 +93,34 @@ TEST_F(LiveOutputTest, AReaderWhoTakesNothingIsWaitedForOnce) {
   EXPECT_EQ(read_all() + output.take_waiting(), lines(200));
 }
 
+TEST_F(LiveOutputTest, WhatIsDueIsDoneWhileAReaderIsWaitedFor) {
+  make_pipe();
+  LiveOutput output(ends[1]);
+  output.open();
+  int pulses = 0;
+  const auto pulse = [&]() -> Duration {
+    ++pulses;
+    return std::chrono::milliseconds(10);
+  };
+  const auto begin = steady_now();
+  for (int i = 0; i < 200; ++i) output.offer(line(i), std::chrono::milliseconds(300), pulse);
+  EXPECT_GE(steady_now() - begin, std::chrono::milliseconds(290));
+  EXPECT_GE(pulses, 29);
+  EXPECT_LT(pulses, 200) << "not at every line";
+  EXPECT_EQ(read_all() + output.take_waiting(), lines(200));
+}
+
+TEST_F(LiveOutputTest, NobodyIsWaitedForWhereWhatIsDueCannotBeDone) {
+  make_pipe();
+  LiveOutput output(ends[1]);
+  output.open();
+  const auto begin = steady_now();
+  for (int i = 0; i < 200; ++i)
+    output.offer(line(i), std::chrono::seconds(5), [] { return Duration::zero(); });
+  EXPECT_LT(steady_now() - begin, std::chrono::seconds(5));
+  EXPECT_EQ(read_all() + output.take_waiting(), lines(200));
+}
+
 TEST_F(LiveOutputTest, ASignalEndsTheWait) {
   make_pipe();
   LiveOutput output(ends[1]);

@@ -19,7 +19,8 @@ import checks
 from checks import check
 
 servoctl = sys.argv[1]
-env = dict(os.environ, SERVOCTL_BUS=f"local:live-{os.getpid()}", SERVOCTL_NODE="1", SERVOCTL_DRIVE="gsd600")
+env = dict(os.environ, SERVOCTL_BUS=f"local:live-{os.getpid()}", SERVOCTL_NODE="1", SERVOCTL_DRIVE="gsd600",
+           NO_COLOR="1")
 PROMPT = "what stood here before"
 
 

@@ -61,6 +61,17 @@ def everything(what, asks, serves):
         check(f"{what}: puts it back", value(run(asks, "param", "get", "Fn_12E", "-n", "1", "--json")) == 77)
         check(f"{what}: but no speed, which a drive that an input enables would follow\n{answer.stderr}",
               value(run(asks, "param", "get", "Fn_33", "-n", "1", "--json")) == 5 and "stays as it is" in answer.stderr)
+        # Address 0 calls all, and none answers to it.
+        run(asks, "backup", "zero.csv", "-n", "1")
+        with open(os.path.join(folder, "zero.csv")) as file:
+            table = file.read()
+        with open(os.path.join(folder, "zero.csv"), "w") as file:
+            file.write(table.replace(",Fn_3A,Modbus address,u16,1,,hex:01 00", ",Fn_3A,Modbus address,u16,0,,hex:00 00"))
+        answer = run(asks, "restore", "zero.csv", "-n", "1", "--with-address", "--yes")
+        check(f"{what}: the address 0 is not restored\n{answer.stderr}", answer.returncode == 8 and "answer nobody on Modbus" in answer.stderr)
+        check(f"{what}: and stays as it is", value(run(asks, "param", "get", "Fn_3A", "-n", "1", "--json")) == 1)
+        answer = run(asks, "restore", "one.json", "-n", "1", "--with-address", "--yes")
+        check(f"{what}: another address is no reason to refuse\n{answer.stderr}", answer.returncode == 0)
         run("sim:ts@1", "backup", "can.json", "-n", "1")
         answer = run(asks, "diff", "one.json", "can.json", "--json")
         told = [row["id"] for row in json.loads(answer.stdout)["result"]["differences"]]

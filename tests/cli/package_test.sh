@@ -33,6 +33,7 @@ has() {  # has NAME FOLDER FILE…
 }
 common=(share/bash-completion/completions/servoctl share/fish/vendor_completions.d/servoctl.fish share/man/man1/servoctl.1.gz
   share/doc/servoctl/README.md share/doc/servoctl/copyright share/doc/servoctl/changelog.gz share/doc/servoctl/docs/motion.md
+  share/doc/servoctl/docs/schema/envelope.schema.json share/doc/servoctl/docs/schema/backup-file.schema.json share/doc/servoctl/README.zh.md
   share/doc/servoctl/examples/first-contact.servoctl share/servoctl/eds/cia/cia402.eds lib/udev/rules.d/60-servoctl.rules)
 
 mkdir root control

@@ -82,14 +82,15 @@ rm -rf "$work"
 
 # Two processes on a virtual bus of this machine.
 name="pipetest$$"
-"$servoctl" sim gsd600@4 --bus "local:$name" >/tmp/servoctl-$name 2>&1 &
+served=$(mktemp)
+"$servoctl" sim gsd600@4 --bus "local:$name" >"$served" 2>&1 &
 sim=$!
-for _ in $(seq 100); do grep -q local /tmp/servoctl-$name && break; sleep 0.05; done
+for _ in $(seq 100); do grep -q local "$served" && break; sleep 0.05; done
 check "a drive of another process on local:" 4 "$("$servoctl" scan --bus "local:$name" --json | jq '.result[0].node')"
 check "read over local:" 624 "$("$servoctl" read 0x6041 -n 4 --bus "local:$name" --json | jq '.result[0].value')"
 kill -INT $sim
 wait $sim
 check "Ctrl-C ends the simulated drive in order" 0 $?
-rm -f /tmp/servoctl-$name
+rm -f "$served"
 printf '%d failed\n' "$failures"
 [ "$failures" -eq 0 ]

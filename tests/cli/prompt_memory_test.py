@@ -75,6 +75,24 @@ def last_place(state):
     expect("exit code behind `use all`", 0, t.exit_code())
     with open(file, encoding="utf-8") as written:
         expect("the nodes kept of `use all`", None, json.load(written)["nodes"])
+    # A FIFO in its place, and in that of the history, is waited for neither at the beginning nor at the end.
+    for name in (file, os.path.join(state, "servoctl", "history")):
+        os.remove(name)
+        os.mkfifo(name)
+    began = time.monotonic()
+    t = Terminal(servoctl, "--drive", "gsd600", state=state)
+    t.see(r"servoctl gsd600> ")
+    t.type(f"bus {cell}\n")
+    t.see(r"servoctl local:\S+ gsd600> ")
+    t.type("exit\n")
+    expect("exit code beside a FIFO", 0, t.exit_code())
+    t = Terminal(servoctl, state=state)
+    t.see(r"notice: [^\n]*prompt\.json is no regular file[\s\S]*servoctl> ")
+    t.type("exit\n")
+    expect("exit code beside a FIFO without a place", 0, t.exit_code())
+    if time.monotonic() - began > 15:
+        failures.append("a FIFO was waited for")
+    os.remove(file)
     with open(file, "w", encoding="utf-8") as out:
         out.write("{")
     t = Terminal(servoctl, state=state)
@@ -162,7 +180,7 @@ def undo(state):
     t.type("param set Pn0214 400\n")
     t.see(r"read back[^>]*> ")
     t.type("undo\n")
-    t.see(rf"Put back Pn0214 on node 1: {before} in place of 400\? \[y/N\] ")
+    t.see(rf"Put back Pn0214 on node 1: {before} = \d+ Hz in place of 400 = 40 Hz\? \[y/N\] ")
     t.type("n\n")
     t.see(r"not confirmed; nothing was sent[^>]*> ")
     expect("the value after No", 400, value())
@@ -186,7 +204,9 @@ def undo(state):
     t.see(r"node 2[^>]*> ")
     t.type("undo --yes\n")
     t.see(r"made with 1 in use, and now 2 is[^>]*> ")
-    t.type(f"use 1\nbus {other}\n")
+    t.type("use 1\n")
+    t.see(r"node 1[^>]*> ")
+    t.type(f"bus {other}\n")
     t.see(other + r" node 1[^>]*> ")
     t.type("undo --yes\n")
     t.see(r"the prompt is not there any more[^>]*> ")
@@ -208,7 +228,7 @@ def undo(state):
     t.type("param set Pn0214 410 --keep\n")
     t.see(r"read back +yes[^>]*> ")
     t.type("undo\n")
-    t.see(r"Put back, and keep at power-off, Pn0214 on node 1: \d+ in place of 410\? \[y/N\] ")
+    t.see(r"Put back, and keep at power-off, Pn0214 on node 1: \d+ = [\d.]+ Hz in place of 410 = 41 Hz\? \[y/N\] ")
     t.type("y\n")
     t.see(r"read back +yes[^>]*> ")
     # What moves a motor is no setting, and hides what was written before it.
@@ -219,7 +239,7 @@ def undo(state):
     t.type("exit\n")
     expect("exit code of exit", 0, t.exit_code())
     for bus, node, family, line, question in (
-            ("sim:ts@3", 3, "ts", "param set Fn_103 7", "Put back Fn_103 on node 3: 0 in place of 7"),
+            ("sim:ts@3", 3, "ts", "param set Fn_103 7", "Put back Fn_103 on node 3: 0 rpm in place of 7 rpm"),
             ("modbus:sim:ts@3", 3, "ts", "param set Fn_103 7", "nothing tells whether it is the same drive. Put back Fn_103")):
         answer = subprocess.run([servoctl, "-b", bus, "-n", str(node), "-d", family], env=env, input=f"{line}\nundo\nexit\n",
                                 capture_output=True, text=True)
@@ -230,6 +250,30 @@ def undo(state):
     answer = subprocess.run([servoctl, "-b", cell, "-n", "1", "-d", "gsd600"], env=env, input=lines, capture_output=True, text=True)
     expect("exit code of undo without --yes in a pipe", 8, answer.returncode)
     expect("the value then", 410, value())
+
+
+def mistyped_bus(state):
+    """Of a bus that cannot be opened nothing changes: SYNC goes on, and a drive stays enabled."""
+    t = Terminal(servoctl, "-b", cell, "-n", "1", "-d", "gsd600", state=state)
+    t.see(r"> ")
+    t.type("sync start --period 10ms --yes\n")
+    t.see(r"period \(ms\)[^>]*> ")
+    t.type("enable --yes\n")
+    t.see(r"ENERGISED, and stays so[^>]*> ")
+    t.type("bus foo\n")
+    t.see(r"error: [^\n]*foo[^>]*" + cell + r" node 1 gsd600 \[operation enabled\??\]> ")
+    answer = run("status", "-n", "1", "--json")
+    expect("energised behind a bus that is none", True, json.loads(answer.stdout)["result"][0]["energised"])
+    t.type(f"bus {other}\n")
+    t.see(r"node 1 was still energised; it has been stopped and disabled[\s\S]*SYNC is no longer produced[\s\S]*> ")
+    t.type("exit\n")
+    expect("exit code behind a bus that is none", 0, t.exit_code())
+
+
+def words_of_the_prompt():
+    answer = run("undo", "-n", "1")
+    if "'undo' is a word of the prompt" not in answer.stderr or answer.returncode != 2:
+        failures.append(f"undo as a command: {answer.returncode} {answer.stderr}")
 
 
 def log(state):
@@ -291,7 +335,8 @@ try:
         if value() is not None and run("read", "0x1000", "-n", "2", bus=other).returncode == 0:
             break
         time.sleep(0.05)
-    for part in (last_place, place_in_a_cabinet, undo, log, full_disk):
+    words_of_the_prompt()
+    for part in (last_place, place_in_a_cabinet, undo, mistyped_bus, log, full_disk):
         with tempfile.TemporaryDirectory() as folder:
             part(folder)
 finally:

@@ -89,7 +89,7 @@ with tempfile.TemporaryDirectory() as state:
     # What is pasted does not run: it waits for Enter, line by line, and Ctrl-C drops it.
     t.see(r"> ")
     t.type("\x1b[200~param explain Pn0214\nnonsense\n\x1b[201~")
-    t.see(r"1 more pasted line waits")
+    t.see(r"还有 1 行等待：Enter 运行这一行，Ctrl-C 全部丢弃")
     t.type("\r")
     t.see(r"对象")
     t.see(r"> nonsense")

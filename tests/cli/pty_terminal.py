@@ -13,11 +13,11 @@ failures = []
 
 
 class Terminal:
-    def __init__(self, servoctl, *arguments, state, lang="C.UTF-8", size=(0, 0)):
+    def __init__(self, servoctl, *arguments, state, lang="C.UTF-8", size=(0, 0), term="xterm"):
         self.text = ""
         self.pid, self.fd = pty.fork()
         if self.pid == 0:
-            env = dict(os.environ, TERM="xterm", XDG_STATE_HOME=state, LANG=lang, COLUMNS="80", LINES="24")
+            env = dict(os.environ, TERM=term, XDG_STATE_HOME=state, LANG=lang, COLUMNS="80", LINES="24")
             for name in ("SERVOCTL_BUS", "SERVOCTL_NODE", "SERVOCTL_DRIVE", "LC_ALL", "LC_CTYPE"):
                 env.pop(name, None)
             fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", *size, 0, 0))

@@ -2,13 +2,11 @@
 """While somebody thinks about a question the bus is heard: nobody's heartbeat counts as lost, no other process waits for us; and
 what was typed before the question is no answer to it. usage: question_test.py SERVOCTL"""
 import os
-import pty
-import select
 import subprocess
 import sys
 import time
 
-from checks import check, finish
+from checks import asked, check, finish
 
 servoctl = sys.argv[1]
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
@@ -22,27 +20,7 @@ def run(*words):
 
 def ask(words, typed_before, answer, wait):
     """The output of a line that asks, and its exit code."""
-    process, terminal = pty.fork()
-    if process == 0:
-        os.execvpe(servoctl, [servoctl, *words], env)
-    out, asked = b"", False
-    if typed_before:
-        os.write(terminal, typed_before)
-    end = time.monotonic() + 60
-    while time.monotonic() < end:
-        if select.select([terminal], [], [], 0.1)[0]:
-            try:
-                data = os.read(terminal, 4096)
-            except OSError:
-                break
-            if not data:
-                break
-            out += data
-        if not asked and b"[y/N]" in out:
-            asked = True
-            time.sleep(wait)
-            os.write(terminal, answer)
-    return out.decode(errors="replace"), os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
+    return asked([servoctl, *words], env, answer, lambda: time.sleep(wait), typed_before)
 
 
 try:

@@ -13,7 +13,7 @@ class RecordingConsole final : public Console {
   void show_progress(std::string_view line) override { progress.emplace_back(line); }
   bool ask(std::string_view question) override {
     questions.emplace_back(question);
-    return answer;
+    return answer && questions.size() < refuses_from;
   }
   void pause(std::string_view text) override { pauses.emplace_back(text); }
   bool can_ask() const override { return person; }
@@ -25,6 +25,8 @@ class RecordingConsole final : public Console {
   std::vector<std::string> pauses;
   std::vector<std::string> progress;
   bool answer = false;
+  std::size_t refuses_from =
+      1'000'000;  ///< The question, counted from 1, from which on `answer` holds no more.
   bool person = false;
   std::size_t columns = 0;
 

@@ -92,7 +92,7 @@ TEST_P(ReportChinese, LeavesNoEnglishWordInTheReportOf) {
   const auto html = report(family, bus, "-n 1 --customer ACME" + tests_in_english(), 0);
   EXPECT_EQ(english_in(html), "");
   for (const auto* word :
-       {"客户", "签字", "点动测试 (jog)", "反转：停止时间", "跟随误差 (deg)", "转矩 (%): 无采样数据"})
+       {"客户", "签字", "点动测试（jog）", "反转：停止时间", "跟随误差（deg）", "转矩（%）：无采样数据"})
     EXPECT_NE(html.find(word), std::string::npos) << word;
 }
 
@@ -123,7 +123,7 @@ TEST(ReportPhrases, PutWordsAroundNamesAndNumbersIntoChinese) {
       in_chinese(
           "0x181 ($NODEID+0x180) not valid, by event (type 255), at most every 2.5 ms, event timer 10 ms, "
           "from SYNC 3 on, assigned"),
-      "0x181 ($NODEID+0x180)，无效，事件触发（类型 255），最短间隔 2.5 ms，事件定时器 10 ms，从第 3 个 SYNC 起，已分配");
+      "0x181 ($NODEID+0x180)，无效，事件触发（类型 255），最短间隔 2.5 ms，事件计时器 10 ms，从第 3 个 SYNC 起，已分配");
   EXPECT_EQ(in_chinese("0x11 generic, communication"), "0x11 一般错误，通信");
   EXPECT_EQ(in_chinese("quick stop active after a quick stop, verified (statusword 0x0617)"),
             "快速停机（快速停机后），已确认（状态字 0x0617）");

@@ -1,15 +1,10 @@
 // What people say of a report: for whom, by whom, which picture, who signs.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "base/base64.hpp"
-#include "cli/line_runner.hpp"
-#include "recording_console.hpp"
-#include "tests/source_dir.hpp"
+#include "report_world.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -22,34 +17,12 @@ constexpr std::string_view kSvg =
     "<?xml version=\"1.0\"?><!-- a > b --><!DOCTYPE svg [<!ENTITY a \"b\">]>\n"
     "<svg xmlns=\"http://www.w3.org/2000/svg\"><script>alert(1)</script></svg>\n";
 
-class ReportCover : public testing::Test {
+class ReportCover : public ReportWorld {
  protected:
-  ReportCover() { fs::create_directories(dir_); }
-  ~ReportCover() override { fs::remove_all(dir_); }
-
-  int run(const std::string& line) {
-    console.out_text.clear();
-    console.err_text.clear();
-    Shell::Options options;
-    options.drive_folders = {fs::path(source_dir()) / "eds"};
-    options.clock = sim::SimBus::Clock::virtual_time;
-    options.defaults.bus = "sim:gsd600@1,gsd600@2";
-    options.defaults.drive = "gsd600";
-    Shell shell(console, std::move(options));
-    return LineRunner(shell).run(line);
-  }
-
-  std::string file(const std::string& name, std::string_view content) const {
-    std::ofstream(dir_ / name) << content;
-    return (dir_ / name).string();
-  }
+  ReportCover() : ReportWorld("sim:gsd600@1,gsd600@2", "gsd600") {}
 
   std::string page(const std::string& options, const std::string& name = "report.html") {
-    const auto path = dir_ / name;
-    EXPECT_EQ(run("report " + path.string() + " " + options), 0) << console.err_text;
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
+    return report(name, options);
   }
 
   /// What is wrong is told before a frame is sent.
@@ -69,9 +42,6 @@ class ReportCover : public testing::Test {
     for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) ++out;
     return out;
   }
-
-  RecordingConsole console;
-  fs::path dir_ = fs::temp_directory_path() / ("servoctl-cover-" + std::to_string(::getpid()));
 };
 
 TEST_F(ReportCover, StandsOnTheFirstPageAndSignsAtTheEnd) {

@@ -195,8 +195,8 @@ with tempfile.TemporaryDirectory() as work:
         check(f"{value} is in the page", value in dom)
 
     servoctl("report", f"{work}/zh.html", "-n", "1", "-b", "sim:ts@1?fault=ERR_oc@1ms", "-d", "ts", "--lang", "zh")
-    dom, _ = look_at(f"{work}/zh.html", ["调试报告", "概要", "总线", "节点 1", "标识", "状态", "故障", "与出厂值不同的设置",
-                                         "过程数据 (PDO)", "测试"], 0)
+    dom, _ = look_at(f"{work}/zh.html", ["调试报告", "概要", "总线", "节点 1", "身份信息", "状态", "故障", "与出厂值不同的设置",
+                                         "过程数据（PDO）", "测试"], 0)
     check("the page says that it is Chinese", '<html lang="zh-CN">' in dom)
     words = re.findall(r"<th[^>]*>([^<]+)</th>", dom)
     names = re.compile(r"[RT]PDO\d+|95 %|Dn_12")  # What has no other name in Chinese.

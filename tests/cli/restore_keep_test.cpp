@@ -51,6 +51,19 @@ TEST_F(RestoreKeepTest, TellsWhatTheDriveReplacesAtItsStart) {
   EXPECT_TRUE(shown("kept       yes")) << console.out_text << console.err_text;
 }
 
+TEST_F(RestoreKeepTest, DoneTwiceLeavesTheOldValuesInTheirFile) {
+  use("sim:gsd600@1", "gsd600");
+  ASSERT_EQ(run("backup %good.json"), 0);
+  ASSERT_EQ(run("param set Pn0214=70Hz Pn0202=33"), 0);
+  ASSERT_EQ(run("restore %good.json --keep --yes"), 0);
+  EXPECT_TRUE(told("the old values of node 1 are in")) << console.err_text;
+  ASSERT_EQ(run("restore %good.json --keep --yes"), 0);
+  EXPECT_TRUE(shown("nothing differs; stored")) << console.out_text;
+  EXPECT_FALSE(told("old values")) << console.err_text;
+  ASSERT_EQ(run("restore %good.json.before-node-1.json --yes"), 0);
+  EXPECT_TRUE(shown("different  2")) << console.out_text;
+}
+
 TEST_F(RestoreKeepTest, AFamilyThatCannotStoreIsToldBeforeTheFirstWrite) {
   use("sim:da200@1", "da200");
   ASSERT_EQ(run("backup %drive.json"), 0);

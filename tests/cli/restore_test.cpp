@@ -1,4 +1,6 @@
 // Restore and clone, as a user runs them.
+#include <regex>
+
 #include "backup_fixture.hpp"
 
 namespace servoctl::cli {
@@ -46,6 +48,22 @@ TEST_F(RestoreTest, IsPutBackAfterTheFactoryValues) {
   EXPECT_EQ(run("verify %mine.json"), 0) << console.out_text;
   EXPECT_TRUE(fs::exists(folder / "mine.json.before-node-1.json"));
   EXPECT_EQ(run("restore %mine.json.before-node-1.json --yes"), 0);
+}
+
+/// 0 is the broadcast address, with which a drive answers nobody on Modbus; on CAN it is a value like
+/// another.
+TEST_F(RestoreTest, AModbusAddressOfZeroGoesBackOverCanAndStaysWithItsOwnDrive) {
+  use("sim:ts@1,ts@2", "ts");
+  ASSERT_EQ(run("param set Fn_3A=0 -n 1"), 0) << console.err_text;
+  ASSERT_EQ(run("backup %silent.json -n 1"), 0);
+  for (const auto* node : {"1", "2"}) {
+    ASSERT_EQ(run(fmt::format("param set Fn_3A=3 -n {}", node)), 0) << console.err_text;
+    ASSERT_EQ(run(fmt::format("restore %silent.json --yes -n {}", node)), 0) << console.err_text;
+  }
+  EXPECT_EQ(run("param get Fn_3A -n 1 --json"), 0);
+  EXPECT_NE(console.out_text.find("\"raw\":0,"), std::string::npos) << console.out_text;
+  EXPECT_EQ(run("param get Fn_3A -n 2 --json"), 0);
+  EXPECT_NE(console.out_text.find("\"raw\":3,"), std::string::npos) << console.out_text;
 }
 
 TEST_F(RestoreTest, GoesIntoAnotherNodeWithItsOwnAddresses) {
@@ -177,6 +195,11 @@ TEST_F(RestoreTest, ThatWasCutOffIsNotBegunAnew) {
   EXPECT_EQ(run("restore %drive.json --yes"), 8);
   EXPECT_NE(console.err_text.find("was interrupted"), std::string::npos) << console.err_text;
   EXPECT_EQ(slurp("drive.json.before-node-1.json"), saved);
+  EXPECT_EQ(run("restore %drive.json --yes --resume"), 8) << "no serial number tells that it is that drive";
+  spill("drive.json.before-node-1.json",
+        std::regex_replace(saved, std::regex("sim:gsd600@1[^\"]*"), "sim:gsd600@1"));
+  EXPECT_EQ(run("restore %drive.json --yes"), 8);
+  EXPECT_NE(console.err_text.find("drive.json to node 1 was interrupted"), std::string::npos);
   EXPECT_EQ(run("restore %drive.json --yes --resume"), 0) << console.err_text;
   EXPECT_EQ(run("verify %drive.json"), 0);
   EXPECT_FALSE(fs::exists(journal));

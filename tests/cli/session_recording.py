@@ -31,7 +31,7 @@ STEPS = [
     ("param se\t", r"search +Find", 0.8),
     ("t Pn0214 45\t", r"45Hz +45kHz", 0.8),
     ("Hz --keep\r", r"450 = 45 Hz(.*\n)+.*" + READY, 1.1),
-    ("jog 60rpm --for 1s --turn 131072\r", r"clear\? \[y/\nN\] ", 2.4),
+    ("jog 60rpm --for 1s --turn 131072\r", r"clear\?\s+\[y/N\] ", 2.4),
     ("y\r", r"torque    %.*\n.*" + READY, 1.7),
     ("undo\r", r"\[y/N\] ", 0.8),
     ("y\r", r"600 = 60 Hz(.*\n)+.*" + READY, 1.1),

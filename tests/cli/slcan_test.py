@@ -8,9 +8,12 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 from checks import check, finish
+from pty_terminal import Terminal
+from pty_terminal import failures as prompt_failures
 from serial_adapters import Adapter, Wire
 
 servoctl = sys.argv[1]
@@ -25,12 +28,12 @@ def run(bus, *words):
 class World:
     """A drive behind one adapter, and another adapter that is as told."""
 
-    def __init__(self, **options):
+    def __init__(self, rate="500k", spec="gsd600@1", **options):
         self.wire = Wire()
         self.adapter = Adapter(self.wire, **options)
         self.far = Adapter(self.wire)
         self.bus = f"slcan:{self.adapter.path}@500k"
-        self.drive = subprocess.Popen([servoctl, "sim", "gsd600@1", "-b", f"slcan:{self.far.path}@500k"], env=env,
+        self.drive = subprocess.Popen([servoctl, "sim", spec, "-b", f"slcan:{self.far.path}@{rate}"], env=env,
                                       stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.drive.stdout.readline()  # `1 drive on …`
 
@@ -162,6 +165,195 @@ with World() as world, tempfile.TemporaryDirectory() as folder:
     state = run(f"slcan:{world.adapter.path}@500k", "status", "-n", "1", "-d", "gsd600", "--json").stdout
     check(f"a drive left energised is stopped though signals came\n{out}{err}{state}",
           json.loads(state)["result"][0]["energised"] is False and "disabled" in err)
+
+# Unplugged while it is read, saved, restored, listened and looked: told once, and with an adapter of that name the next line works.
+with World(spec="gsd600@1?delay=5ms") as world, tempfile.TemporaryDirectory() as folder:
+    name = os.path.join(folder, "adapter")
+    bus = f"slcan:{name}@500k"
+    node = ("-n", "1", "-d", "gsd600")
+    good, cut = os.path.join(folder, "good.json"), os.path.join(folder, "cut.json")
+    lines = os.path.join(folder, "lines")
+    with open(lines, "w") as file:
+        file.write("read 0x1000\n" * 1000)
+
+    def unplug():
+        os.remove(name)
+        world.adapter.unplug()
+        world.wire.adapters.remove(world.adapter)
+
+    def plug():
+        world.adapter = Adapter(world.wire)
+        os.symlink(world.adapter.path, name)
+
+    os.symlink(world.adapter.path, name)
+    answer = run(bus, "backup", good, *node)
+    check(f"a backup in peace\n{answer.stderr}", answer.returncode == 0)
+    run(bus, "param", "set", "Pn0214=45Hz", *node)
+    for words in (["run", lines], ["backup", cut], ["restore", good, "--yes"], ["monitor"], ["watch", "0x6041"], ["nmt", "watch"]):
+        line = subprocess.Popen([servoctl, "-b", bus, *node, *words], env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True)
+        time.sleep(0.8)
+        check(f"{words} is under way", line.poll() is None)
+        unplug()
+        begun = time.monotonic()
+        said = line.communicate(timeout=60)[1]
+        check(f"unplugged in {words}: exit code {line.returncode}\n{said}", line.returncode == 3 and time.monotonic() - begun < 2)
+        check(f"unplugged in {words}: told once\n{said}", said.count("is gone") == 1 and said.count("error:") == 1)
+        check("half a backup is no file", not os.path.exists(cut))
+        plug()
+        answer = run(bus, "read", "0x1000", "-n", "1")
+        check(f"plugged in behind {words}\n{answer.stderr}", answer.returncode == 0)
+        if "--resume" in said:
+            check("a restore goes on", run(bus, "restore", good, "--resume", "--yes", *node).returncode == 0)
+    # The same at a prompt.
+    terminal = Terminal(os.path.abspath(servoctl), "-b", bus, *node, state=folder, size=(40, 200))
+    terminal.see(r"> ")
+    terminal.type("read 0x1000\n")
+    terminal.see(r"0x00020192[\s\S]*> ")
+    unplug()
+    terminal.see(r"is gone", seconds=3)
+    time.sleep(1)
+    terminal.read(0.2)
+    check(f"a prompt tells it once {terminal.text!r}", "is gone" not in terminal.text)
+    plug()
+    terminal.type("read 0x1000\n")
+    terminal.see(r"0x00020192[\s\S]*> ")
+    terminal.type("watch 0x6041 --changes\n")
+    time.sleep(1)
+    terminal.text = ""
+    unplug()
+    terminal.see(r"is gone[\s\S]*> ", seconds=3)
+    plug()
+    terminal.type("read 0x1000\n")
+    terminal.see(r"0x00020192[\s\S]*> ")
+    terminal.type("exit\n")
+    terminal.exit_code()
+    check(f"a prompt goes on when its adapter was unplugged: {prompt_failures}", not prompt_failures)
+
+# The bitrate is found by listening: nothing is sent, and the adapter is closed afterwards.
+def chatter(world, rate):
+    """Somebody talks at `rate`; at another one an adapter that listens counts errors."""
+    def talk():
+        while not world.adapter.gone:
+            if world.adapter.is_open and world.adapter.bitrate == rate:
+                world.adapter.say("t701105")
+            world.adapter.flags = "F00" if world.adapter.bitrate == rate else "F80"
+            time.sleep(0.05)
+    threading.Thread(target=talk, daemon=True).start()
+
+
+with World(rate="250k") as world:
+    port = world.bus.split("@")[0]
+    chatter(world, 250)
+    answer = subprocess.run([servoctl, "bus", "detect", port, "--for", "1500ms", "--json"], env=env, capture_output=True, text=True, timeout=60)
+    result = json.loads(answer.stdout)
+    heard = [(row["bitrate"], row["heard"]) for row in result["result"]["heard"]]
+    check(f"bus detect finds 250k\n{answer.stdout}{answer.stderr}",
+          answer.returncode == 0 and result["result"]["bitrate"] == 250000
+          and heard == [(500000, "errors only"), (1000000, "errors only"), (250000, "frames")])
+    check(f"it says how the bus is called\n{answer.stdout}", f"{port}@250k" in answer.stdout)
+    closes(world.adapter, "bus detect")
+    words = {word for word in world.adapter.heard if word[:1] not in "F"}
+    check(f"it only listened: {words}", "O" not in words and "L" in words and not any(word[:1] in "tTrR" for word in words))
+    answer = run(world.bus, "scan", "--all-bitrates", "--yes")
+    check(f"where somebody talks nobody is asked\n{answer.stderr}", answer.returncode == 8 and "is in use" in answer.stderr)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        search = subprocess.Popen([servoctl, "bus", "detect", port, "--bitrate", "500k", "--for", "30s"], env=env,
+                                  stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for _ in range(200):
+            if world.adapter.is_open:
+                break
+            time.sleep(0.02)
+        search.send_signal(number)
+        search.wait(timeout=10)
+        closes(world.adapter, f"bus detect and signal {number}")
+
+# At the prompt the bus that has the adapter is closed for it, and opened again by the next line.
+with World() as world, tempfile.TemporaryDirectory() as folder:
+    port = world.bus.split("@")[0]
+    with open(os.path.join(folder, "lines"), "w") as lines:
+        lines.write(f"read 0x1000 -n 1\nbus detect {port} --bitrate 250k --bitrate 500k --for 2s --yes\nread 0x1000 -n 1\n")
+    talker = threading.Event()
+    def boot_up():
+        while not talker.is_set():
+            if world.adapter.listens_only and world.adapter.is_open and world.adapter.bitrate == 500:
+                world.adapter.say("t701105")
+            time.sleep(0.05)
+    threading.Thread(target=boot_up, daemon=True).start()
+    answer = run(world.bus, "run", lines.name)
+    talker.set()
+    check(f"bus detect between two reads\n{answer.stdout}{answer.stderr}",
+          answer.returncode == 0 and answer.stdout.count("131474") == 2 and "500 kbit/s" in answer.stdout)
+    with open(lines.name, "w") as lines:
+        lines.write(f"enable -n 1 --yes\nbus detect {port} --bitrate 250k --for 300ms --yes\n")
+    answer = run(world.bus, "-d", "gsd600", "run", lines.name)
+    check(f"not while a drive is energised over it\n{answer.stdout}{answer.stderr}",
+          answer.returncode == 8 and "energised over it" in answer.stderr)
+
+with World(refuses="L") as world:
+    answer = subprocess.run([servoctl, "bus", "detect", world.bus], env=env, capture_output=True, text=True, timeout=60)
+    check(f"an adapter that cannot listen only is told\n{answer.stderr}",
+          answer.returncode == 2 and "cannot listen without acknowledging" in answer.stderr)
+    check(f"and was not opened: {world.adapter.heard}", "O" not in world.adapter.heard and not world.adapter.is_open)
+with World(silent=True, version="b158aa7 github.com/example") as world:
+    answer = subprocess.run([servoctl, "bus", "detect", world.bus], env=env, capture_output=True, text=True, timeout=60)
+    check(f"firmware that answers to nothing as well\n{answer.stderr}", answer.returncode == 2 and "nobody knows" in answer.stderr)
+    check(f"it was sent C and V: {world.adapter.heard}", set(world.adapter.heard) == {"C", "V"})
+
+# Drives that say nothing are asked at each bitrate; the adapter is back at its own in the end.
+with World(rate="125k") as world:
+    answer = run(world.bus, "scan", "--all-bitrates", "--yes", "--json")
+    check(f"scan --all-bitrates finds the drive\n{answer.stdout}{answer.stderr}",
+          answer.returncode == 0 and [n["node"] for n in json.loads(answer.stdout)["result"]] == [1])
+    check(f"it says how the bus is called from now on\n{answer.stdout}", f"-b slcan:{world.adapter.path}@125k" in answer.stdout)
+    closes(world.adapter, "scan --all-bitrates")
+    check(f"the adapter is at its own bitrate: {world.adapter.bitrate}", world.adapter.bitrate == 500)
+    answer = run(f"slcan:{world.adapter.path}@125k", "read", "0x1000", "-n", "1")
+    check(f"under that name the drive answers\n{answer.stderr}", answer.returncode == 0)
+with World(rate="10k", refuses="") as world:
+    world.drive.terminate()
+    answer = run(world.bus, "scan", "--all-bitrates", "--yes")
+    check(f"nobody at any bitrate\n{answer.stdout}{answer.stderr}", answer.returncode == 4 and "is at 500 kbit/s again" in answer.stderr)
+    check(f"all nine were tried: {world.adapter.heard}", {f"S{n}" for n in range(9)} <= set(world.adapter.heard))
+    closes(world.adapter, "scan of nobody")
+
+# Elsewhere it is said why not, and what to do.
+for words, text in (
+        (["bus", "detect", "socketcand://192.168.7.2/can1"], "run servoctl there: `bus detect can1`"),
+        (["scan", "--all-bitrates", "--yes", "-b", "socketcand://192.168.7.2/can1"], "run servoctl there: `scan --all-bitrates -b can1`"),
+        (["bus", "detect", "gateway://192.168.7.2"], "is set where the gateway runs"),
+        (["bus", "detect", "modbus:/dev/ttyUSB0@19200,8E1"], "silent until they are asked"),
+        (["scan", "--all-bitrates", "--yes", "-b", "modbus://192.168.7.2"], "silent until they are asked"),
+        (["bus", "detect", "coe:eth0"], "EtherCAT has one speed"),
+        (["bus", "detect", "local:x"], "has no bitrate to find"),
+        (["bus", "detect", "slcan:/dev/no-such-port"], "is the adapter plugged in?")):
+    answer = subprocess.run([servoctl, *words], env=env, capture_output=True, text=True, timeout=30)
+    check(f"{words}: {answer.returncode} {answer.stderr}", answer.returncode in (2, 3) and text in answer.stderr)
+
+# An adapter that starts anew, or hangs, while it is only listened to.
+for what, text in (("starts anew", "has started anew"), ("hangs", "does not answer any more")):
+    with World() as world:
+        monitor = subprocess.Popen([servoctl, "-b", world.bus, "monitor", "--for", "20s"], env=env, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        for _ in range(200):
+            if world.adapter.is_open and "F" in world.adapter.heard:
+                break
+            time.sleep(0.02)
+        time.sleep(1.2)
+        begin = time.monotonic()
+        if what == "hangs":
+            world.adapter.silent, world.adapter.version, world.adapter.end = True, "", ""
+        else:
+            world.adapter.is_open = False
+        err = monitor.communicate(timeout=30)[1]
+        took = time.monotonic() - begin
+        check(f"an adapter that {what} is told, after {took:.1f} s\n{err}", monitor.returncode == 3 and text in err and took < 8)
+
+# What it says of itself is in the picture of the doctor.
+with World(flags="F21") as world:
+    answer = run(world.bus, "doctor", "--json")
+    codes = {finding["code"] for bus in json.loads(answer.stdout)["result"] for finding in [bus]}
+    check(f"the doctor knows version and flags\n{answer.stdout}", {"adapter", "overrun", "error-passive"} <= codes and "V1013" in answer.stdout)
 
 for bus, code, words in (
         ("slcan:/dev/null@500k", 3, "/dev/null is no serial port"),

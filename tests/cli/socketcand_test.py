@@ -1,83 +1,20 @@
 #!/usr/bin/env python3
-"""The program on a bus behind a server of the socketcand protocol, written here from its doc/protocol.md: a simulated drive is
-one client, commands are others.
+"""The program on a bus behind a server of the socketcand protocol: a simulated drive is one client, commands are others.
 usage: socketcand_test.py SERVOCTL"""
 import json
 import os
+import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
 
 from checks import check, finish
+from socketcand_server import Server
 
 servoctl = sys.argv[1]
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
 env["LANG"] = "C"
-
-
-class Server:
-    """Raw mode of one interface, vcan0. Like socketcand it ends the connection when it reads half an element."""
-
-    def __init__(self):
-        self.listener = socket.create_server(("127.0.0.1", 0))
-        self.port = self.listener.getsockname()[1]
-        self.clients = []
-        self.halves = 0
-        self.bus = threading.Lock()  # A bus has one order for all: without it an answer could come before its question.
-        threading.Thread(target=self.accept, daemon=True).start()
-
-    def accept(self):
-        while True:
-            try:
-                client, _ = self.listener.accept()
-            except OSError:
-                return
-            client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            threading.Thread(target=self.serve, args=(client,), daemon=True).start()
-
-    def serve(self, client):
-        client.sendall(b"< hi >")
-        try:
-            while data := client.recv(8290):
-                if not data.endswith(b">"):
-                    self.halves += 1
-                    break
-                for element in data.decode().split(">")[:-1]:
-                    if not self.answer(client, element.lstrip("< ").split()):
-                        return
-        except OSError:
-            pass
-        finally:
-            if client in self.clients:
-                self.clients.remove(client)
-            client.close()
-
-    def answer(self, client, words):
-        if words[0] == "open":
-            client.sendall(b"< ok >" if words[1] == "vcan0" else b"< error could not open bus >")
-            return words[1] == "vcan0"
-        if words[0] == "rawmode":
-            self.clients.append(client)
-            client.sendall(b"< ok >")
-        elif words[0] == "echo":
-            client.sendall(b"< echo >")
-        elif words[0] == "send":
-            data = "".join(f"{int(word, 16):02X}" for word in words[3:])
-            frame = f"< frame {words[1]} {time.time():.6f} {data} >".encode()
-            with self.bus:
-                self.forward(client, frame)
-        return True
-
-    def forward(self, sender, frame):
-        for other in list(self.clients):
-            if other is sender:
-                continue
-            try:
-                other.sendall(frame)
-            except OSError:
-                pass  # It is gone; its own thread finds out.
 
 
 def run(bus, *words):
@@ -111,7 +48,7 @@ try:
             pass  # It is gone already.
     out, err = jog.communicate(timeout=30)
     check(f"a connection that breaks in a motion is made anew and the drive stopped\n{out}{err}",
-          "closed the connection" in err and "is back after" in err and jog.returncode not in (0, 70))
+          "closed the connection" in err and "can be opened: now stopping node 1" in err and jog.returncode not in (0, 70))
     state = json.loads(run(bus, "status", "-n", "1", "-d", "gsd600", "--json").stdout)
     check(f"the drive is not energised: {state}", state["result"][0]["energised"] is False)
     check("no command was sent in halves", server.halves == 0)
@@ -120,6 +57,35 @@ finally:
     drive.communicate()
     server.listener.shutdown(socket.SHUT_RDWR)  # Its thread waits in accept().
     server.listener.close()
+
+# A server that hangs, its connection not closed: what is under way ends with an error that says so, and the next line works.
+code = "import sys, time; sys.path.insert(0, sys.argv[1]); from socketcand_server import Server; print(Server().port, flush=True); time.sleep(600)"
+for words in (["backup", "hung.json"], ["watch", "0x6041", "--for", "20s"], ["monitor", "--for", "20s"]):
+    hanging = subprocess.Popen([sys.executable, "-c", code, os.path.dirname(os.path.abspath(__file__))], stdout=subprocess.PIPE, text=True)
+    far = f"socketcand://127.0.0.1:{hanging.stdout.readline().strip()}/vcan0"
+    drive = subprocess.Popen([servoctl, "sim", "gsd600@1?delay=5ms", "-b", far], env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    drive.stdout.readline()
+    try:
+        line = subprocess.Popen([servoctl, "-b", far, "-n", "1", "-d", "gsd600", *words], env=env, stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(0.7)
+        check(f"{words} is under way", line.poll() is None)
+        hanging.send_signal(signal.SIGSTOP)
+        begun = time.monotonic()
+        said = line.communicate(timeout=60)[1]
+        # Whoever asks is without an answer before the server is known to be silent.
+        what = "no answer within" if words[0] == "backup" else "does not answer any more"
+        check(f"a server that hangs ends {words} with an error\n{said}", line.returncode == (4 if words[0] == "backup" else 3)
+              and said.count("error:") == 1 and what in said and time.monotonic() - begun < 8)
+        check("no file is made of half a backup", not os.path.exists("hung.json"))
+        hanging.send_signal(signal.SIGCONT)
+        time.sleep(0.2)
+        answer = run(far, "monitor", "--for", "100ms")
+        check(f"the next line connects\n{answer.stderr}", answer.returncode == 0)
+    finally:
+        for process in (drive, hanging):
+            process.kill()
+            process.communicate()
 
 answer = run(bus, "scan")
 check(f"a server that is gone\n{answer.stderr}", answer.returncode == 3 and "nothing listens at" in answer.stderr)

@@ -85,6 +85,19 @@ try:
     check("terminal: it ends well", process.wait(10) == 0)
     check("terminal: the end is shown", b"verified" in os.read(terminal, 65536))
 
+    # Who reads what lines print holds up no SYNC, though he is waited for.
+    listener = subprocess.Popen([servoctl, "monitor", "--service", "sync", "--for", "8s", "-o", "jsonl"], env=env, stdout=subprocess.PIPE)
+    process = subprocess.Popen([servoctl], env=env, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    process.stdin.write(b"sync start --period 20ms --yes\nobjects --json\nstatus --json\n")
+    process.stdin.flush()
+    times = [json.loads(line).get("time") for line in listener.stdout]
+    times = [time for time in times if time is not None]
+    longest = max(b - a for a, b in zip(times, times[1:])) if len(times) > 1 else None
+    check(f"SYNC goes on while nobody reads: {len(times)}, at most {longest} s apart", longest is not None and longest < 1 and times[-1] - times[0] > 6)
+    text = process.communicate(timeout=20)[0].decode()
+    check("SYNC: what was printed meanwhile is whole", text.count("{\"servoctl\":1,") == 2 and json.loads(text.splitlines()[-1])["ok"])
+    listener.wait()
+
     # What reads the trace stands still: the line is carried out, what the trace has not got is told and is no success.
     with tempfile.TemporaryDirectory() as folder:
         fifo = os.path.join(folder, "trace")

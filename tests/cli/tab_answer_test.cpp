@@ -91,9 +91,10 @@ TEST_F(TabAnswers, SayWhatAWordIsWhereBashOnlyLists) {
 TEST_F(TabAnswers, AreWordAndMeaningForZshAndFish) {
   EXPECT_EQ(fish("sta", {"-d", "gsd600", "read"}).substr(0, 12), "words\nstatus");
   EXPECT_NE(fish("statusw", {"-d", "gsd600", "read"}).find("statusword\t0x6041"), std::string::npos);
-  EXPECT_EQ(zsh("coe:s", {"-b"}), "open\n+coe\\:sim\\::simulated EtherCAT drives: coe:sim:sv2@1");
+  EXPECT_EQ(zsh("coe:s", {"-b"}),
+            "open\n=values values\nvalues+coe\\:sim\\::simulated EtherCAT drives: coe:sim:sv2@1");
   EXPECT_EQ(zsh("35", {"-d", "gsd600", "home"}),
-            "words\n-35:Present position is home, no motion (enabled only)");
+            "words\n=values values\nvalues-35:Present position is home, no motion (enabled only)");
 }
 
 TEST_F(TabAnswers, TellTheCommandsBehindHelpAndWhatAGroupHas) {

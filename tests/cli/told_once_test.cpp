@@ -62,6 +62,20 @@ class Told : public testing::Test {
   RecordingConsole console;
 };
 
+TEST_F(Told, HowASubIndexInDigitsAloneWasReadOnceALine) {
+  const std::string ten = "2001:10: the sub-index is read as hexadecimal: 10h, decimal 16\n";
+  EXPECT_EQ(run("gsd600", "read 2001:10 2001:10 -n 1,2"), 0);
+  EXPECT_EQ(console.err_text, "notice: " + ten);
+  EXPECT_EQ(run("gsd600", "write 2001:10 900 -n 1"), 0);
+  EXPECT_EQ(console.err_text, "notice: " + ten);
+  EXPECT_EQ(run("gsd600", "param set 2001:10=900 -n 1"), 0);
+  EXPECT_EQ(console.err_text, "notice: " + ten);
+  EXPECT_EQ(run("gsd600", "pdo map TPDO2 2001:10/16 -n 1 --dry-run"), 2);
+  EXPECT_EQ(console.err_text.find("notice: " + ten), 0U) << console.err_text;
+  EXPECT_EQ(run("gsd600", "read 2001:10h 2001:0x10 2001:F 2001:8 -n 1"), 0);
+  EXPECT_EQ(console.err_text, "");
+}
+
 TEST_F(Told, OfATestThatEndedWithAnErrorThatItDidNotPass) {
   fs::create_directories(dir_);
   const auto tests = dir_ / "tests.json";

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "tested_drive.hpp"
+#include "trial/comm_trial.hpp"
 
 namespace servoctl::commands {
 using namespace command;
@@ -47,6 +48,41 @@ TEST_F(DriveTests, CommFailsWhenAnAnswerIsTooLate) {
       criterion(run("test comm", {{"--longest", "10ms"}}), "longest_round_trip").starts_with("failed 20"));
   EXPECT_TRUE(
       criterion(run("test comm", {{"--longest", "50ms"}}), "longest_round_trip").starts_with("passed"));
+}
+
+/// A computer that is late for so long in every wait.
+trial::CommTrial on_busy_computer(Duration each) {
+  trial::CommTrial out{.count = 5, .longest = 10ms};
+  out.own_delay = [late = Duration::zero(), each]() mutable { return late += each; };
+  return out;
+}
+
+TEST_F(DriveTests, CommTakesOffForWhatThisComputerWasLate) {
+  build("gsd600@1?delay=20ms", "gsd600");
+  const auto judged = trial::test_communication(context, 1, on_busy_computer(15ms));
+  ASSERT_TRUE(judged);
+  for (const auto& one : judged->criteria)
+    if (one.id == "longest_round_trip") {
+      EXPECT_EQ(one.verdict, report::Verdict::passed);
+      EXPECT_EQ(one.note, "without up to 15 ms for which this computer was busy");
+    }
+  EXPECT_TRUE(report::passed(*judged));
+  const auto on_time = trial::test_communication(context, 1, on_busy_computer(0ms));
+  ASSERT_TRUE(on_time);
+  EXPECT_FALSE(report::passed(*on_time)) << "the drive itself is late";
+}
+
+TEST_F(DriveTests, CommDoesNotCountAsLostWhatThisComputerMissed) {
+  build("gsd600@1", "gsd600");
+  drive().wire_faults().drop_answers = 2;
+  const auto judged = trial::test_communication(context, 1, on_busy_computer(400ms));
+  ASSERT_TRUE(judged);
+  EXPECT_EQ(judged->criteria.front().verdict, report::Verdict::passed);
+  EXPECT_EQ(judged->criteria.front().note, "in 3 reads; 2 more were not judged: this computer was busy");
+  drive().wire_faults().silent = true;
+  const auto never = trial::test_communication(context, 1, on_busy_computer(400ms));
+  ASSERT_TRUE(never);
+  EXPECT_EQ(never->criteria.front().verdict, report::Verdict::skipped);
 }
 
 TEST_F(DriveTests, CommHoldsTheHeartbeatAgainst1017h) {

@@ -98,6 +98,20 @@ TEST_F(Replay, CountsWhateverCanMoveAMotor) {
   EXPECT_EQ(question("(0.0) can0 601#2B17100000000000\n").find("can move"), std::string::npos);
 }
 
+TEST_F(Replay, OfTheNamedBusSendsAndAsksNothingOfTheOthers) {
+  build("gsd600@1", "gsd600");
+  constexpr std::string_view kBoth =
+      "(0.000000) can0 601#2B171000E8030000\n"
+      "(0.010000) can1 601#2B171000D0070000\n"
+      "(0.020000) can1 609#4041600000000000\n";
+  EXPECT_FALSE(replay(kBoth)) << "which of them is not said";
+  EXPECT_FALSE(replay(kBoth, {{"--channel", "can7"}}));
+  const auto begin = sim_bus.now();
+  ASSERT_TRUE(replay(kBoth, {{"--channel", "can0"}}));
+  EXPECT_LT(sim_bus.now() - begin, 300ms) << "node 9 of the other bus is waited for";
+  EXPECT_EQ(load_le(drive().value(objects::kProducerHeartbeat)), 1000U);
+}
+
 TEST_F(Replay, WithoutAFamilyEveryVendorObjectCanMove) {
   build("gsd600@1", "gsd600");
   const auto* family = std::exchange(context.profile, nullptr);

@@ -132,8 +132,8 @@ TEST_F(Units, GiveWayToWhatIsSaidAndToWhatTheDriveTells) {
   EXPECT_EQ(cell(run("units show"), "source"), "\"drive\"");
   EXPECT_EQ(cell(run("units show"), "value"), "131072");
   EXPECT_EQ(cell(run("units show"), "from"),
-            "\"the drive: 0x2002:3B × 0x6091:2 / (0x6091:1), when 0x2002:39 is 1, when 0x2002:3F is 1, when "
-            "0x2002:41 is 1\"");
+            "\"the drive: 0x2002:3Bh × 0x6091:2 / (0x6091:1) (when 0x2002:39h = 1, 0x2002:3Fh = 1, "
+            "0x2002:41h = 1)\"");
   ASSERT_TRUE(jog()) << error;
   EXPECT_EQ(notices.find("kept"), std::string::npos) << notices;
   EXPECT_NE(

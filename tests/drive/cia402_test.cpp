@@ -125,11 +125,15 @@ TEST(StatuswordBits, AreNamedByModeWhereTheirMeaningDependsOnIt) {
 }
 
 TEST(WordsOfControlAndStatus, TellStateOrCommandAndTheBitsBeside) {
-  EXPECT_EQ(statusword_words(0x1637, 1, false),
+  EXPECT_EQ(statusword_words(0x1637, 1),
             "operation enabled (voltage enabled, remote, target reached, set-point acknowledge)");
-  EXPECT_EQ(statusword_words(0x0040, 0, false), "switch on disabled");
-  EXPECT_EQ(statusword_words(0x1027, 0, true),
-            std::string(name_zh(DriveState::operation_enabled)) + " (bit 12)");
+  EXPECT_EQ(statusword_words(0x0040, 0), "switch on disabled");
+  const Chinese upper = [](std::string_view word) -> std::string_view {
+    return word == "bit {}" ? "BIT {}" : word == "bit 12" ? "BIT 12" : word == "halt" ? "HALT" : "OTHER";
+  };
+  EXPECT_EQ(statusword_words(0x1227, 0, upper),
+            std::string(name_zh(DriveState::operation_enabled)) + "（OTHER，BIT 12）");
+  EXPECT_EQ(controlword_words(0x012F, 0, upper), "OTHER（BIT 5，HALT）");
   EXPECT_EQ(controlword_words(0x0006, 1), "shutdown");
   EXPECT_EQ(controlword_words(0x027F, 1),
             "enable operation (new set-point, change set immediately, relative, change on set-point)");

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "drive/naming.hpp"
+
 namespace servoctl::drive {
 namespace {
 
@@ -157,6 +159,26 @@ TEST(RangeText, LeavesOutWhatIsNotKnown) {
   EXPECT_EQ(range_text(m), "at most 20000");
   m.max.reset();
   EXPECT_EQ(range_text(m), "");
+}
+
+TEST(Quantity, OfBitsIsToldInHexadecimal) {
+  const auto text = [](ObjectAddress object, std::uint64_t value) {
+    return plain_text(meaning(target_at(nullptr, object), 1), od::Value(value));
+  };
+  EXPECT_EQ(text({0x60FD, 0}, 4128772), "0x003F0004");
+  EXPECT_EQ(text({0x60FE, 1}, 0x10000), "0x00010000");
+  EXPECT_EQ(text({0x6041, 0}, 0x270), "0x0270");
+  EXPECT_EQ(text({0x60FE, 0}, 2), "2");
+  auto inputs = meaning(target_at(nullptr, {0x60FD, 0}), 1);
+  inputs.type = od::DataType::u32;
+  inputs.type_known = true;
+  EXPECT_EQ(plain_text(inputs, od::Value(std::uint64_t{1})), "0x00000001");
+}
+
+TEST(Quantity, IsToldWithoutAnExponent) {
+  Meaning m = hertz();
+  m.encoding = od::Encoding::f32;
+  EXPECT_EQ(plain_text(m, od::Value(std::uint64_t{0x551184E7})), "1000000000000");
 }
 
 }  // namespace

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "drive/enabling_write.hpp"
+#include "drive/naming.hpp"
+#include "tests/source_dir.hpp"
+
 namespace servoctl::drive {
 namespace {
 
@@ -96,6 +100,38 @@ TEST(Rules, RegistersOfModbusAreBlocksOfObjects) {
         "registers = [{ index = 0xFFFF, count = 2, at = 0 }]", "inputs = 33", "speed = 3"})
     EXPECT_FALSE(parse_rules(head + bad, "x1.toml")) << bad;
   EXPECT_FALSE(parse_rules("format = 1\nfamily = \"x1\"\n", "x1.toml")->modbus.exists());
+}
+
+TEST(Rules, NameWhatEnergisesAMotorWithoutTheControlwordAndWhatEndsIt) {
+  const std::string head = "format = 1\nfamily = \"x1\"\n[motion]\nwithout_controlword = ";
+  const auto rules = parse_rules(head + R"([{ name = "P1", end = "P2", value = 1 }])", "x1.toml");
+  ASSERT_TRUE(rules) << rules.error().message;
+  ASSERT_EQ(rules->motion.without_controlword.size(), 1U);
+  EXPECT_EQ(rules->motion.without_controlword.front().name, "P1");
+  EXPECT_EQ(rules->motion.without_controlword.front().end, "P2");
+  EXPECT_EQ(rules->motion.without_controlword.front().value, 1);
+  for (const auto* wrong : {"[\"P1\"]", "[{ name = \"P1\" }]", "[{ name = \"P1\", end = 2, value = 1 }]",
+                            "{ name = \"P1\", end = \"P2\", value = 1 }"})
+    EXPECT_FALSE(parse_rules(head + wrong, "x1.toml")) << wrong;
+}
+
+TEST(Rules, NameOnlyParametersThatThereAreAsEnergisingAMotor) {
+  const std::vector<std::filesystem::path> folders{std::filesystem::path(source_dir()) / "eds"};
+  for (const auto* family : {"ts", "gsd600"}) {
+    const auto profile = load_profile(family, folders);
+    ASSERT_TRUE(profile) << profile.error().message;
+    EXPECT_GE(profile->rules.motion.without_controlword.size(), 2U);
+    for (const auto& parameter : profile->rules.motion.without_controlword) {
+      const auto place = place_of(*profile, parameter.name);
+      ASSERT_TRUE(place) << parameter.name;
+      EXPECT_TRUE(place_of(*profile, parameter.end)) << parameter.end;
+      const Bytes on{1, 0};
+      const Bytes off{0, 0};
+      EXPECT_EQ(power_parameter(&*profile, *place, on), &parameter);
+      EXPECT_EQ(power_parameter(&*profile, *place, off), nullptr);
+      EXPECT_EQ(power_parameter(nullptr, *place, on), nullptr);
+    }
+  }
 }
 
 TEST(Rules, KnowSeveralWaysToOneMeasureAndWordsInTwoLanguages) {

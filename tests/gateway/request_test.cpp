@@ -91,6 +91,15 @@ TEST(GatewayLines, OneThatIsTooLongTakesNoRoomAndTheNextIsWhole) {
   EXPECT_EQ(whole.text, "[8] start");
 }
 
+TEST(GatewayLines, OneWithoutAnEndTakesNoRoomWhenItCameTogetherWithAWholeOne) {
+  LineReader reader(4);
+  reader.put("1234\n12345678");
+  EXPECT_EQ(reader.take().value().text, "1234");
+  EXPECT_EQ(reader.pending(), 4U);
+  reader.put("\n");
+  EXPECT_TRUE(reader.take().value().too_long);
+}
+
 TEST(GatewayLines, OneThatComesWholeAndIsTooLongIsToldAsWell) {
   LineReader reader(4);
   reader.put("12345\n1234\n");

@@ -48,10 +48,12 @@ def pieces(text):
 def main(root):
     files = (glob.glob(root + '/src/cabinet/*.cpp') + glob.glob(root + '/commands/cabinet_*.cpp') +
              [root + '/src/cli/shell_axes.cpp'])
+    # Commands in hints have the place of their line behind them: as they stand in the source.
     shown = ''
     for path in glob.glob(root + '/tests/cli/golden/*.txt') + [root + '/tests/cli/cabinet/said.txt']:
         with open(path, encoding='utf-8', errors='replace') as file:
-            shown += re.sub(r'\s+', ' ', file.read().replace('\\"', '"'))
+            text = re.sub(r'\s+', ' ', file.read().replace('\\"', '"'))
+            shown += text + re.sub(r'`([a-z ]+?)( (-[bnd]|--cabinet) [^ `]+)+`', r'`\1`', text)
     bad = number = 0
     for path in sorted(files):
         with open(path, encoding='utf-8') as file:

@@ -10,6 +10,7 @@
 A text for people is a literal with a blank and two letters. Words without a blank stand in zh.po where people see them: column
 heads, states. What stands in no literal, because it is put together (`comm test`), has the remark `#. made of: WHAT`; `#. names: 0, 2` says at
 which placeholders (from 0) names of commands, files or axes stand, which stay as they are although they look like words.
+Sources have no Chinese, but for the few that are listed below with the reason.
 """
 import glob
 import os
@@ -18,6 +19,20 @@ import sys
 
 CATALOGUE = 'src/report/zh.po'
 OTHERS = 'src/report/not_for_people.po'
+# Chinese in sources: below the layer of the catalogue, or what is recognised and not said.
+CHINESE_SOURCES = {
+    'src/drive/cia402.cpp': 'names of states, in both languages as the data of the families are',
+    'src/od/esi_entry.cpp': 'notes of entries made from a file, in both languages as those of the data are',
+    'src/od/esi_pdos.cpp': 'notes and names of entries made from a file, likewise',
+    'src/od/table_row.cpp': 'an example of a column that is in Chinese',
+    'src/session/online_dictionary.cpp': 'notes of entries that a slave tells, in both languages as those of the data are',
+    'src/cli/terminal/colour.cpp': 'words whose colour means something',
+    'src/report/chinese_marks.cpp': 'marks',
+    'src/report/chinese_marks.hpp': 'marks',
+    'src/report/translation.cpp': 'words and marks between the parts of a list',
+    'src/show/axis_names.cpp': 'what stands before the number of a node',
+    'src/show/topic_query.cpp': 'words that people type',
+}
 NOT_FOR_PEOPLE = 'not for people'
 MADE_OF = 'made of'
 TOKEN = re.compile(r'R"\((?P<raw>.*?)\)"|"(?P<text>(?:[^"\\\n]|\\.)*)"|//[^\n]*|/\*.*?\*/|\'(?:[^\'\\]|\\(?:x[0-9A-Fa-f]+|[0-7]{1,3}|.))\'|\s+|.', re.S)
@@ -144,6 +159,9 @@ def check(root):
     for text, files in found.items():
         if is_for_people(text) and text not in entries and text not in others:
             wrong.append(f'{files[0]}: not in {CATALOGUE}: "{escaped(text)}"')
+        for name in files:
+            if re.search('[\u4e00-\u9fff]', text) and name not in CHINESE_SOURCES:
+                wrong.append(f'{name}: Chinese belongs into {CATALOGUE}: "{escaped(text)}"')
     for path, known in ((CATALOGUE, entries), (OTHERS, others)):
         for entry in known.values():
             if entry.text not in found and not entry.says(MADE_OF):

@@ -62,6 +62,23 @@ TEST(ModbusFraming, TakesPrintedFramesByteByByte) {
     }
 }
 
+/// Adapters of RS-485 hear one where the line changes its direction.
+TEST(ModbusFraming, AZeroBeforeAnAnswerIsNoPartOfIt) {
+  Deframer in(Framing::rtu, Deframer::Expects::answers);
+  in.push(hex("00 00"));
+  in.push(hex("01 06 00 33 00 C8 78 53 00 01 06 00 33 00 C8 78 53"));
+  EXPECT_TRUE(in.take());
+  EXPECT_TRUE(in.take());
+  EXPECT_FALSE(in.take());
+  EXPECT_EQ(in.take_damaged(), 3U);
+  Deframer requests(Framing::rtu, Deframer::Expects::requests);
+  const auto to_all = frame(Framing::rtu, {0, 0, write_request(0x0033, 200)});
+  requests.push(to_all);
+  const auto message = requests.take();
+  ASSERT_TRUE(message) << "a request to all has the address 0";
+  EXPECT_EQ(message->unit, 0);
+}
+
 TEST(ModbusFraming, AWrongBitMakesNoMessage) {
   for (std::size_t bit = 0; bit < 7 * 8; ++bit) {
     auto bytes = hex("01 03 02 00 14 B8 4B");

@@ -46,6 +46,32 @@ TEST(Cautions, AboutForcedLimitInputsSayWhichOneIsForced) {
   }
 }
 
+TEST(Cautions, AboutFactoryLimitsEndWhereOthersAreSet) {
+  MotionBench bench("dm", 10000);
+  EXPECT_TRUE(look(bench).has("The speed limit 6080h does not protect"));
+  EXPECT_TRUE(look(bench).has("The torque limit 6072h does not protect"));
+  ASSERT_TRUE(bench.session->download(1, {0x6080, 0}, {0x00, 0x00, 0x48, 0x41}));  // 12.5
+  ASSERT_TRUE(bench.session->download(1, {0x6072, 0}, {0x00, 0x00, 0x40, 0x40}));  // 3.0
+  EXPECT_FALSE(look(bench).has("does not protect"));
+}
+
+TEST(Cautions, SpeakChineseWithTheirLead) {
+  MotionBench bench("sv2");
+  Motion motion(*bench.session, bench.profile(), 1, bench.options);
+  ASSERT_TRUE(motion.prepare());
+  const Look told{motion.look(true).value()};
+  EXPECT_TRUE(told.has("无法读取 PA-20（查看面板）：PA-20 = 1（出厂值）时不检测"));
+  EXPECT_FALSE(told.has("cannot be read"));
+}
+
+TEST(Cautions, NameWhatCanOpenNeedsWhereItIsSetOtherwise) {
+  MotionBench bench("gsd600", 131072);
+  EXPECT_FALSE(look(bench).has("is needed for CANopen"));
+  const auto place = *drive::place_of(bench.profile(), "Pn0000");
+  ASSERT_TRUE(bench.session->download(1, place, store_le(5, 2)));
+  EXPECT_TRUE(look(bench).has("it is 5, and 8 is needed for CANopen: the drive may not obey"));
+}
+
 TEST(Inputs, AreReadByThePolarityOfTheFamily) {
   MotionBench bench("gsd600", 131072);
   EXPECT_TRUE(look(bench).has("60FDh is 0x003F0004: no limit, no home switch", PreflightItem::Weight::good));
@@ -63,10 +89,11 @@ TEST(LostCommunication, ThatTheManualNamesAnAlarmForIsNotSaidToStopNothing) {
     const auto told = look(bench);
     if (!told.has("none")) continue;  // It has a watchdog of its own.
     EXPECT_TRUE(told.has(std::string("the manual names alarm ") + alarm)) << family;
-    EXPECT_FALSE(told.has("none: nothing stops the drive")) << family;
+    EXPECT_FALSE(told.has("none: nothing is known that stops the drive")) << family;
   }
   WatchdogPlan nothing;
-  EXPECT_EQ(to_string(nothing), "none: nothing stops the drive if the cable is cut or servoctl dies");
+  EXPECT_EQ(to_string(nothing),
+            "none: nothing is known that stops the drive if the cable is cut or servoctl dies");
   nothing.alarms = {"AL.20"};
   EXPECT_NE(to_string(nothing).find("alarm AL.20 for lost communication"), std::string::npos);
 }

@@ -114,6 +114,7 @@ class MotionBench {
     MotionReport out;
     Motion motion(*session, profile(), 1, options);
     if (const auto ready = motion.prepare(); !ready) return failed(ready.error());
+    if (const auto found = motion.find_watchdog(); !found) return failed(found.error());
     const auto made = plan(motion, kind);
     if (!made) return failed(made.error());
     before = objects();

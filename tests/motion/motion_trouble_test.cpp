@@ -59,7 +59,7 @@ TEST_F(MotionTrouble, AMoveThatNeverArrivesEndsInTheTimeItNeeds) {
 
 TEST_F(MotionTrouble, AFollowingErrorAboveItsLimitStopsTheMotion) {
   MotionBench own("dm");
-  own.options.max_following_error = "0.1";
+  own.options.max_following_error = "0.1deg";
   own.drive().axis_faults().lag = 0.05;
   const auto done = own.jog(kJog);
   ASSERT_FALSE(done.outcome);

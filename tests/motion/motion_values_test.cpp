@@ -46,6 +46,28 @@ TEST_P(ValuesOfFamily, ALimitIsMoreThanZero) {
   expect_refused(bench.jog(jog_for("30rpm", 1s)), "--accel 0");
 }
 
+TEST_P(ValuesOfFamily, ANumberWithoutAUnitMovesNothing) {
+  expect_refused(bench.move(move_to("90", "30rpm", true)), "move 90");
+  expect_refused(bench.move(move_to("90deg", "30", true)), "--speed 30");
+  expect_refused(bench.jog(jog_for("60", 1s)), "jog 60");
+  expect_refused(bench.jog(jog_for("0x3C", 1s)), "jog 0x3C");
+  const auto bare = bench.move(move_to("90", "30rpm", true));
+  EXPECT_EQ(bare.outcome.error().message, "'90' has no unit");
+  EXPECT_NE(bare.outcome.error().hint.find("deg, rev, rad"), std::string::npos) << bare.outcome.error().hint;
+  bench.options.window = "10";
+  expect_refused(bench.jog(jog_for("30rpm", 1s)), "--window 10");
+  bench.options.window.clear();
+  bench.options.speed_limit = "100";
+  expect_refused(bench.torque({.torque = "1%", .length = 100ms}), "--limit 100");
+  bench.options.speed_limit = "100rpm";
+  expect_refused(bench.torque({.torque = "1", .length = 100ms}), "torque 1");
+}
+
+TEST_P(ValuesOfFamily, ZeroNeedsNoUnit) {
+  const auto done = bench.move(move_to("0", "30rpm"));
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+}
+
 TEST_P(ValuesOfFamily, ATorqueAboveTheRatedOneIsRefusedAndRaisedKnowingly) {
   bench.options.speed_limit = "100rpm";
   const bool in_nm = std::string(GetParam().name) == "dm";

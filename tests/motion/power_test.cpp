@@ -50,6 +50,44 @@ TEST_P(PowerOfFamily, LeavesAQuickStopDownwards) {
   EXPECT_EQ(bench.drive().power_state(), DriveState::switch_on_disabled);
 }
 
+/// What is known behind it of the power that it had before.
+std::optional<bool> had_power(MotionBench& bench, PowerAim aim) {
+  std::vector<PowerDownPlan> plans(1);
+  plans.front().node = 1;
+  plans.front().aim = aim;
+  const auto done = std::move(take_down(*bench.session, std::move(plans)).front());
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  return done.had_power();
+}
+
+TEST_P(PowerOfFamily, TellsWhetherADriveHadAnyThatIsDisabled) {
+  MotionBench bench(GetParam());
+  Power power(*bench.session, bench.profile(), 1);
+  EXPECT_EQ(had_power(bench, PowerAim::disable), false) << "it stood there without";
+  ASSERT_TRUE(power.reach(DriveState::operation_enabled));
+  EXPECT_NE(had_power(bench, PowerAim::disable), false);
+  EXPECT_EQ(had_power(bench, PowerAim::disable), false);
+  bench.drive().raise_fault(0x2310, {}, bench.session->now());
+  bench.wait(50ms);
+  EXPECT_EQ(had_power(bench, PowerAim::disable), false);
+}
+
+/// A motor at rest may have lost its power by 02h before anybody looks.
+TEST_P(PowerOfFamily, ClaimsNothingOfTheTimeBeforeAQuickStop) {
+  MotionBench bench(GetParam());
+  Power power(*bench.session, bench.profile(), 1);
+  EXPECT_EQ(had_power(bench, PowerAim::stop), std::nullopt);
+  ASSERT_TRUE(power.reach(DriveState::operation_enabled));
+  EXPECT_NE(had_power(bench, PowerAim::stop), false);
+}
+
+TEST(PowerDownResult, ClaimsNothingOfAStateThatNobodyKnows) {
+  PowerDownResult done;
+  EXPECT_EQ(done.had_power(), std::nullopt) << "it was never read";
+  done.found = DriveState::unknown;
+  EXPECT_EQ(done.had_power(), std::nullopt);
+}
+
 INSTANTIATE_TEST_SUITE_P(Families, PowerOfFamily,
                          testing::Values("cia402", "gsd600", "da200", "sv2", "ts", "dm"),
                          [](const auto& one) { return std::string(one.param); });
@@ -99,6 +137,26 @@ TEST_F(Stubborn, AStatuswordThatFitsNoStateIsNotCommandedOn) {
   const auto done = enable("0500");
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::refused);
+}
+
+/// 605Ah (CiA 402-2): 2 leaves the quick stop downwards by itself, 5 stays in it with power.
+TEST(QuickStop, IsLeftUpwardsOnlyWhereItsOptionKeepsThePower) {
+  for (const auto& [option, first] : {std::pair("02", "0000"), std::pair("05", "0F00")}) {
+    auto owned = std::make_unique<session::ScriptedBus>();
+    std::vector<std::string> words;
+    owned->on_send = [&, option = option](session::ScriptedBus& bus, const std::string& sent) {
+      if (sent.substr(0, 12) == "601#40416000") bus.arrive("581#4B41600007060000");
+      if (sent.substr(0, 12) == "601#405A6000") bus.arrive(std::string("581#4B5A6000") + option + "000000");
+      if (sent.substr(0, 12) != "601#2B406000") return;
+      words.push_back(sent.substr(12, 4));
+      bus.arrive("581#6040600000000000");
+    };
+    session::Session session(std::move(owned), "test", session::Options{});
+    MotionBench family("gsd600");
+    EXPECT_FALSE(Power(session, family.profile(), 1).reach(DriveState::operation_enabled));
+    ASSERT_FALSE(words.empty());
+    EXPECT_EQ(words.front(), first) << option;
+  }
 }
 
 TEST_F(Stubborn, AQuickStopThatChangesNothingIsNoSuccess) {

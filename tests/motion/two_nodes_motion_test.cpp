@@ -1,4 +1,5 @@
 // A second node of the same number that turns up in the middle of a motion.
+#include "motion/motion_result.hpp"
 #include "motion_support.hpp"
 
 namespace servoctl::motion {
@@ -18,7 +19,14 @@ TEST_F(MotionTrouble, ASecondNodeOfItsNumberStopsTheMotion) {
       bench.bus->injected.push_back(can::to_string(frame));
   };
   const auto done = bench.jog(kJog);
-  expect_stopped(done, "two nodes answer with this node-ID");
+  ASSERT_FALSE(done.outcome);
+  EXPECT_NE(done.outcome.error().message.find("two nodes answer with this node-ID"), std::string::npos)
+      << done.outcome.error().message;
+  EXPECT_FALSE(done.end.verified) << "which of two is without power is not known";
+  const auto text = end_text(done.end, done.watchdog);
+  EXPECT_EQ(text.find("watchdog"), std::string::npos) << "it was taken back: " << text;
+  EXPECT_FALSE(bench.energised());
+  EXPECT_EQ(bench.changed(), std::vector<std::string>{});
   EXPECT_EQ(done.outcome.error().code, Errc::refused);
   EXPECT_LT(bench.session->now() - begin, std::chrono::seconds(3));
 }

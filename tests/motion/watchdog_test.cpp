@@ -106,7 +106,7 @@ TEST_F(Watchdog, GuardingWhoseAlarmIsMaskedIsNotPromised) {
   const auto found = plan();
   EXPECT_EQ(found.kind, Kind::none);
   const auto text = to_string(found);
-  EXPECT_NE(text.find("nothing stops the drive"), std::string::npos) << text;
+  EXPECT_NE(text.find("nothing is known that stops the drive"), std::string::npos) << text;
   EXPECT_NE(text.find("all entries of 1016h are taken"), std::string::npos) << text;
   EXPECT_NE(text.find("Pn0199 is 0 (a change takes effect when the drive starts)"), std::string::npos)
       << text;
@@ -137,10 +137,7 @@ PreflightItem::Weight weight(std::string_view family, WatchdogPlan::Kind kind) {
   const auto plan = plan_watchdog(*bench.session, bench.profile(), 1, {});
   EXPECT_TRUE(plan);
   EXPECT_EQ(plan->kind, kind) << family;
-  const MotionUnits units(*bench.session, bench.profile(), 1, {});
-  const auto items = preflight(*bench.session, units, 1, *plan, false);
-  EXPECT_TRUE(items);
-  return items->back().weight;
+  return watchdog_item(*plan).weight;
 }
 
 /// CiA 301 promises another NMT state; what the motor does then is said by 6007h alone.
@@ -148,14 +145,17 @@ TEST(WatchdogLine, IsACautionWhereNoObjectTellsTheReaction) {
   WatchdogPlan plan;
   plan.kind = Kind::heartbeat;
   plan.time = kWatchdogTime;
-  EXPECT_FALSE(plan.is_sure());
+  EXPECT_EQ(plan.stops(), Stops::unknown);
   EXPECT_NE(to_string(plan).find("NOT KNOWN is what the motor then does"), std::string::npos)
       << to_string(plan);
-  plan.reaction = "fault";
-  EXPECT_TRUE(plan.is_sure());
+  plan.option = 1;
+  EXPECT_EQ(plan.stops(), Stops::yes);
   EXPECT_EQ(to_string(plan).find("NOT KNOWN"), std::string::npos) << to_string(plan);
+  plan.option = -1;  // CiA 402-2: manufacturer specific
+  EXPECT_EQ(plan.stops(), Stops::unknown);
+  plan.option = 1;
   plan.assumed = true;
-  EXPECT_FALSE(plan.is_sure());
+  EXPECT_EQ(plan.stops(), Stops::unknown);
 }
 
 TEST(WatchdogLine, IsACautionWhereTheManualDoesNotTellTheReaction) {

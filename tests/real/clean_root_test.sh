@@ -44,12 +44,23 @@ mount --rbind /proc "$root/proc"
 if env -i chroot "$root" /usr/bin/ls / 2>/dev/null; then echo "the root is not clean"; exit 1; fi
 
 cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/packed" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
-told=$(dpkg --root="$root" --force-not-root -i "$work"/packed/*.deb 2>&1) || { echo "dpkg refuses: $told"; exit 1; }
+# An older package, with a file that the present one has no more, is what most people have.
+dpkg-deb -R "$work"/packed/*.deb "$work/older"
+sed -i 's/^Version: .*/Version: 0.0.1-1/' "$work/older/DEBIAN/control"
+gone=usr/share/servoctl/eds/gone.eds
+echo gone >"$work/older/$gone"
+dpkg-deb --root-owner-group -b "$work/older" "$work/older.deb" >"$work/log"
+told=$(dpkg --root="$root" --force-not-root -i "$work/older.deb" 2>&1) || { echo "dpkg refuses the older one: $told"; exit 1; }
+[ -s "$root/$gone" ] || { echo "the older package is not installed"; exit 1; }
+updated=$(dpkg --root="$root" --force-not-root -i "$work"/packed/*.deb 2>&1) || { echo "dpkg refuses to update: $updated"; exit 1; }
 failures=0
 fail() { echo "FAILED $*"; failures=$((failures + 1)); }
 inside() { env -i LC_ALL=C PATH=/usr/bin:/usr/sbin chroot "$root" "$@" 2>&1 || true; }
 
 [[ $told == *'setcap cap_net_raw+ep /usr/bin/servoctl'* ]] || fail "the capability is not told: $told"
+[[ $updated == *'are gone'* ]] || fail "that an update takes the capability away is not told: $updated"
+[ ! -e "$root/$gone" ] || fail "an update leaves $gone"
+[ "$(dpkg --root="$root" --force-not-root -s servoctl | grep -c '^Status: install ok installed')" -eq 1 ] || fail "an update leaves it half installed"
 answer=$(inside servoctl --version)
 [ "$answer" = "servoctl $(head -1 "$build/version/version.txt")" ] || fail "--version: $answer"
 answer=$(inside servoctl drives)
@@ -63,9 +74,12 @@ answer=$(inside man -w servoctl)
 for file in bash-completion/completions/servoctl zsh/vendor-completions/_servoctl fish/vendor_completions.d/servoctl.fish; do
   [ -s "$root/usr/share/$file" ] || fail "$file is missing"
 done
+for file in docs/json.md docs/schema/envelope.schema.json README.md README.zh.md copyright; do
+  [ -s "$root/usr/share/doc/servoctl/$file" ] || fail "doc/servoctl/$file is missing"
+done
 if command -v getcap >/dev/null && [ -n "$(getcap "$root/usr/bin/servoctl")" ]; then fail "a capability was set"; fi
 dpkg --root="$root" --force-not-root -P servoctl >"$work/log" 2>&1 || fail "it cannot be removed: $(cat "$work/log")"
 left=$(find "$root" -xdev -name '*servoctl*' -not -path '*/var/log/*' | head -5)
 [ -z "$left" ] || fail "removing it leaves $left"
 [ "$failures" -eq 0 ] || exit 1
-echo "installed, used and removed in a root of libc, dash and man"
+echo "installed, updated, used and removed in a root of libc, dash and man"

@@ -4,6 +4,7 @@
 # usage: field_test.sh SERVOCTL
 set -u
 servoctl=$1
+here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 background=()
 trap '[ ${#background[@]} -eq 0 ] || kill "${background[@]}" 2>/dev/null; rm -rf "$work"' EXIT
@@ -209,8 +210,52 @@ check_drives_and_interface() {
   run bus up can0 --bitrate 1M --yes; expect 0 '^bitrate +1 Mbit/s'
 }
 
+check_slaves_and_interface() {
+  simulate 'gsd600@3?lss'
+  local line=(lss set-bitrate 500k --all --activate 1s -b can0)
+  run "${line[@]}" --dry-run
+  expect 0 '`ip link set can0 down`, `ip link set can0 up type can bitrate 500000`'
+  run "${line[@]}"; expect 8 'can0 goes with them to 500 kbit/s \(from 1 Mbit/s'
+  [ "$(bitrate can0)" = 1000000 ] || fail "a question that was not answered changed can0"
+  run "${line[@]}" --yes; expect 0 'can0 went with them: 500 kbit/s'
+  is_at 500000 || fail "can0 did not go to 500000 with the slave"
+  run bus up can0 --bitrate 1M --yes; expect 0 '^bitrate +1 Mbit/s'
+  "$servoctl" sim gsd600@9 --bus can1 >"$work/other" 2>&1 & background+=($!)
+  sleep 1
+  run "${line[@]}" --yes; expect 0 'can0 is left alone: node 9 would be left at 1 Mbit/s'; expect 0 'bus up can0 --bitrate 500000'
+  is_at 1000000 || fail "can0 left a node behind"
+  kill "${background[-1]}" "${background[-2]}"; wait "${background[-1]}" "${background[-2]}" 2>/dev/null
+  run lss set-bitrate 500k --all --activate 1s -b vcan0 --yes; expect 4 'no LSS slave answers'
+}
+
+# The documents of what only an interface of the kernel has, against docs/schema/.
+hold() {
+  checks=$((checks + 1))
+  out=$("$servoctl" "$@" --json 2>/dev/null | python3 "$here/../cli/hold_documents.py" 2>&1) || fail "$* --json is not as docs/schema/ says"
+}
+check_documents() {
+  python3 -c 'import jsonschema' 2>/dev/null || { echo "python3-jsonschema is missing: no document is held against its schema"; return; }
+  hold bus status
+  hold bus status can0
+  hold bus up can0 --bitrate 250k --yes --dry-run
+  hold bus up can0 --bitrate 250k
+  hold bus up can0 --bitrate 250k --yes
+  hold bus detect can0 --dry-run
+  hold bus detect can0 --for 100ms --bitrate 125k --yes
+  hold scan --all-bitrates --bus can0 --dry-run
+  hold doctor can0 --for 200ms
+  hold doctor --for 200ms
+  hold bus down can0 --dry-run
+  hold bus down can0
+  hold bus status can0
+  hold bus down can0 --dry-run
+  run bus up can0 --bitrate 1M --yes; expect 0 '1 Mbit/s'
+}
+
 check_up_and_down
+check_documents
 check_drives_and_interface
+check_slaves_and_interface
 check_status
 check_holders
 check_right

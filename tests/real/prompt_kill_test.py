@@ -11,6 +11,7 @@ import select
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 
 servoctl = sys.argv[1]
@@ -134,14 +135,36 @@ def kill_once(number):
         prompt.close()
 
 
-drive = subprocess.Popen([servoctl, "sim", f"{families[0]}@1,{families[1]}@2"], env=env, stdout=subprocess.DEVNULL,
-                         stderr=subprocess.DEVNULL)
-try:
+said = tempfile.TemporaryFile("w+")
+
+
+def serve():
+    """The simulated drives, which have answered."""
+    process = subprocess.Popen([servoctl, "sim", f"{families[0]}@1,{families[1]}@2"], env=env, stdout=subprocess.DEVNULL, stderr=said)
     end = time.monotonic() + 20
     while energised(1) is None and time.monotonic() < end:
         time.sleep(0.05)
-    for i in range(kills):
-        kill_once(i)
+    return process
+
+
+drive = serve()
+try:
+    number = ended = 0
+    while number < kills:
+        before = failures
+        kill_once(number)
+        if drive.poll() is None:
+            number += 1
+            continue
+        # The prompt is what this is about: once they may end. What they said is shown.
+        said.seek(0)
+        print(f"the simulated drives ended behind kill {number}: {drive.returncode}: {said.read()}", flush=True)
+        ended += 1
+        if ended > 1:
+            fail("the simulated drives do not stay")
+            break
+        failures = before
+        drive = serve()
 finally:
     drive.terminate()
     drive.wait()

@@ -133,7 +133,7 @@ if [ "${VCAN_GUEST:-}" = uml ]; then
   sleep 0.3
   check "and one that is error-passive" "failed error-passive" "$(controller)"
   SERVOCTL_DRIVES=$(dirname "$0")/../../eds "$servoctl" report "$work/report.json" -n 1 --bus can0 -d gsd600 >/dev/null 2>&1
-  check "a report tells bitrate and controller" '[1000000,"error-passive"]' "$(jq -c '[.link.bitrate, .link.controller]' "$work/report.json")"
+  check "a report tells bitrate and controller" '[1000000,"error-passive"]' "$(jq -c '[.buses[0].link.bitrate, .buses[0].link.controller]' "$work/report.json")"
 fi
 
 # 7. Objects of any size over the kernel's queue of ten frames, with frames of others in between.

@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <random>
 
 #include "report/chinese_value.hpp"
+#include "report/text_parts.hpp"
+#include "report/zh_po.hpp"
 
 namespace servoctl::report {
 namespace {
@@ -43,6 +46,73 @@ TEST(Catalogue, TakesTheWholeTextAndThenThePatternWithTheMostLetters) {
   const auto c = small_catalogue();
   EXPECT_EQ(c.translated("the drive is in fault"), "驱动器故障");
   EXPECT_EQ(c.translated("node 2 did not answer within 5 ms: fault"), "节点 2 在 5 ms 内无应答：故障");
+}
+
+TEST(Catalogue, TakesNamesOfDataWhereTheProgramHasNoWord) {
+  const auto c = small_catalogue();
+  const Names names{{"Statusword", "状态字"}, {"fault", "另一个"}};
+  EXPECT_EQ(c.translated("node 1: Statusword", &names), "节点 1：状态字");
+  EXPECT_EQ(c.translated("node 1: fault", &names), "节点 1：故障");
+  EXPECT_EQ(c.translated("node 1: Statusword"), "节点 1：Statusword");
+}
+
+TEST(Catalogue, KnowsThatUnitsAreNoEnglish) {
+  const Catalogue c(std::vector<PoEntry>{{"turn at {} for {}", "以 {} 转动 {}"}});
+  EXPECT_EQ(c.translated("turn at 60 rpm for 300 ms"), "以 60 rpm 转动 300 ms");
+}
+
+TEST(Catalogue, TakesASentenceInCapitalsAsOne) {
+  const Catalogue c({{"IT IS NOT KNOWN: SWITCH IT OFF", "情况不明：切断电源"}, {"NOT KNOWN", "错"}});
+  EXPECT_EQ(c.translated("IT IS NOT KNOWN: SWITCH IT OFF"), "情况不明：切断电源");
+  EXPECT_EQ(c.translated("IT IS NOT KNOWN: SWITCH IT OFF (node 1)"), "情况不明：切断电源（node 1）");
+  EXPECT_EQ(c.translated("a.txt:3: lift: IT IS NOT KNOWN: SWITCH IT OFF (0x40)"),
+            "a.txt:3：lift：情况不明：切断电源（0x40）");
+}
+
+/// Of all sentences of the catalogue, whatever the program puts before or behind one.
+TEST(Catalogue, KnowsASentenceBehindTheNameOfANodeAnAxisABusAndAFile) {
+  const auto entries = parse_po(zh_po(), "zh.po");
+  ASSERT_TRUE(entries);
+  std::size_t sentences = 0;
+  for (const auto& entry : *entries) {
+    constexpr std::size_t kWords = 3;
+    const bool whole =
+        Phrase(entry.id).places().empty() && entry.id.find_first_of("\n,;:(") == std::string::npos;
+    const auto blanks = static_cast<std::size_t>(std::count(entry.id.begin(), entry.id.end(), ' '));
+    if (!whole || blanks < kWords || entry.id.front() == ' ' || entry.id.back() == ' ') continue;
+    const auto text = std::string(bare(entry.id).text);
+    const auto said = in_chinese(text);
+    ++sentences;
+    for (const std::string form :
+         {"node 1: @", "@ (node 1)", "lift: @", "can0: @", "a.txt:3: @", "a.txt:3: node 1: @ [NODE=1]",
+          "node 1, object 0x6041:0: @", "@; the drive is in fault"}) {
+      const auto put = [&form](const std::string& what) {
+        return form.substr(0, form.find('@')) + what + form.substr(form.find('@') + 1);
+      };
+      EXPECT_NE(in_chinese(put(text)).find(said), std::string::npos)
+          << put(text) << " is " << in_chinese(put(text)) << " and has no " << said;
+    }
+  }
+  EXPECT_GT(sentences, 500U);
+}
+
+TEST(Catalogue, OpensAndClosesBracketsInOneWay) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("fault (0x238)"), "故障（0x238）");
+  EXPECT_EQ(c.translated("x (fault)"), "x（故障）");
+  EXPECT_EQ(c.translated("x (0x238)"), "x (0x238)");
+}
+
+TEST(Catalogue, LeavesTheRoundOfABatchFileBehindAnError) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.translated("the drive is in fault [NODE=1]"), "驱动器故障 [NODE=1]");
+}
+
+TEST(Catalogue, KnowsItsLiteralsWithBlanksAndPlaces) {
+  const auto c = small_catalogue();
+  EXPECT_EQ(c.literal(" (assumed)"), "（推定）");
+  EXPECT_EQ(c.literal("node {}: {}"), "节点 {}：{}");
+  EXPECT_EQ(c.literal("node 1: {}"), "");
 }
 
 TEST(Catalogue, LeavesQuotesBackticksAndNamesAsTheyAre) {

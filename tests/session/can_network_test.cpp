@@ -115,9 +115,9 @@ TEST_F(CanNetworkTest, LetsEveryListenerHearEveryFrameUntilItEnds) {
 }
 
 TEST_F(CanNetworkTest, GivesEachFrameToTheChannelsOfItsNodeAlone) {
-  bus->on_send = [](ScriptedBus& bus, const std::string& sent) {
-    if (sent.starts_with("605#40")) bus.arrive("586#4F61600003000000", 1ms);
-    if (sent.starts_with("605#40")) bus.arrive("585#4F61600001000000", 2ms);
+  bus->on_send = [](ScriptedBus& wire, const std::string& sent) {
+    if (sent.starts_with("605#40")) wire.arrive("586#4F61600003000000", 1ms);
+    if (sent.starts_with("605#40")) wire.arrive("585#4F61600001000000", 2ms);
   };
   EXPECT_EQ(session->upload(5, {0x6061, 0}), Bytes{1});
 }
@@ -134,9 +134,9 @@ TEST_F(CanNetworkTest, UsesAChannelAgainWithTheTimeoutOfToday) {
 }
 
 TEST_F(CanNetworkTest, LearnsWhereEmergenciesComeFromWhatIsReadAndWritten) {
-  bus->on_send = [](ScriptedBus& bus, const std::string& sent) {
-    if (sent.starts_with("605#4014")) bus.arrive("585#43141000C1010000", 1ms);
-    if (sent.starts_with("606#2314")) bus.arrive("586#6014100000000000", 1ms);
+  bus->on_send = [](ScriptedBus& wire, const std::string& sent) {
+    if (sent.starts_with("605#4014")) wire.arrive("585#43141000C1010000", 1ms);
+    if (sent.starts_with("606#2314")) wire.arrive("586#6014100000000000", 1ms);
   };
   ASSERT_TRUE(session->upload(5, {0x1014, 0}));
   ASSERT_TRUE(session->download(6, {0x1014, 0}, Bytes{0xC2, 0x01, 0, 0}));

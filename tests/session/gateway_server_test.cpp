@@ -23,12 +23,14 @@ class GatewayServing : public testing::Test {
     ASSERT_TRUE(bus) << bus.error().message;
     session.emplace(std::move(*bus), "test", Options{});
     ASSERT_TRUE(session->listen());
-    server.emplace(*session,
-                   GatewayServer::Options{
-                       .writes = writes,
-                       .version = "0.1",
-                       .tell = [this](std::string_view line) { told.emplace_back(line); },
-                       .stop = [this](const std::set<std::uint8_t>& nodes) { stopped.push_back(nodes); }});
+    server.emplace(
+        *session, GatewayServer::Options{
+                      .writes = writes,
+                      .version = "0.1",
+                      .tell = [this](std::string_view line) { told.emplace_back(line); },
+                      .energises = [](std::uint8_t, ObjectAddress object,
+                                      ByteSpan data) { return object.index == 0x2038 && load_le(data) != 0; },
+                      .stop = [this](const std::set<std::uint8_t>& nodes) { stopped.push_back(nodes); }});
     server->on_client(1);
     server->on_client(2);
   }
@@ -143,6 +145,17 @@ TEST_F(GatewayServing, ADriveThatAClientEnabledIsStoppedWhenItGoes) {
   run();
   EXPECT_EQ(stopped, (std::vector<std::set<std::uint8_t>>{{1}}));
   EXPECT_EQ(server->energised(), (std::set<std::uint8_t>{2}));
+}
+
+TEST_F(GatewayServing, OneThatAClientEnergisedByAParameterIsStoppedWhenItGoesToo) {
+  open("ts@1", true);
+  EXPECT_EQ(ask("[1] 1 w 0x2038 0 u16 0\r\n"), "[1] OK\r\n");
+  EXPECT_TRUE(server->energised().empty());
+  EXPECT_EQ(ask("[2] 1 w 0x2038 0 u16 1\r\n"), "[2] OK\r\n");
+  EXPECT_EQ(server->energised(), std::set<std::uint8_t>{1});
+  server->on_lost(1);
+  run();
+  EXPECT_EQ(stopped, (std::vector<std::set<std::uint8_t>>{{1}}));
 }
 
 TEST_F(GatewayServing, OneThatGoesInTheMiddleOfEnablingIsStoppedToo) {

@@ -22,6 +22,7 @@ struct LssHooks {
   std::function<void(can::Frame&)> change_answer = {};
   std::function<void(int request)> before_request = {};
   std::function<void()> after_request = {};
+  bool comes_back = false;  ///< When it is asked to.
   int requests = 0;
   int answers = 0;
 };
@@ -38,6 +39,9 @@ class LssBus final : public can::Bus {
     const auto sent = number == hooks_->lose_request ? Result<void>() : bus_->send(frame);
     if (hooks_->after_request) hooks_->after_request();
     return sent;
+  }
+  Result<void> recover(TimePoint deadline) override {
+    return hooks_->comes_back ? Result<void>() : can::Bus::recover(deadline);
   }
   Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
     for (;;) {

@@ -168,6 +168,8 @@ TEST(Restore, PutsEverythingBackAfterARefusalAtAnyStep) {
   with_trouble_at_every_step(&Trouble::abort_at, [](const RestoreOutcome& outcome) {
     ASSERT_TRUE(outcome.failure);
     EXPECT_TRUE(outcome.rolled_back);
+    for (const auto& notice : outcome.notices)
+      EXPECT_EQ(notice.find("what was written went to RAM"), std::string::npos) << notice;
   });
 }
 

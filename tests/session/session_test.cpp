@@ -72,6 +72,33 @@ TEST_F(SessionTest, ScansAllNodesInOneTimeout) {
   EXPECT_LT(session->now() - before, 530ms) << "and 20 ms for a second node of the same number";
 }
 
+/// Frames without an end, each of them as late as reading it takes.
+class FloodedBus final : public can::Bus {
+ public:
+  TimePoint now() const override { return now_; }
+  Result<void> send(const can::Frame&) override { return {}; }
+  Result<std::optional<can::Frame>> receive(TimePoint) override {
+    now_ += 50us;
+    EXPECT_LT(++taken, 100'000) << "it never ends";
+    if (taken == 100'000) return fail(Errc::bus, "enough");
+    return std::optional(can::parse_frame("123#01").value());
+  }
+  int taken = 0;
+
+ private:
+  TimePoint now_{1s};
+};
+
+TEST(SessionListens, ATenthOfASecondWhereFramesComeFasterThanTheyAreRead) {
+  auto owned = std::make_unique<FloodedBus>();
+  auto* const bus = owned.get();
+  Session session(std::move(owned), "test", Options{});
+  const auto begin = session.now();
+  EXPECT_TRUE(session.listen());
+  EXPECT_LE(session.now() - begin, 110ms);
+  EXPECT_GE(bus->taken, 1'000) << "and not less than what is there in that time";
+}
+
 TEST_F(SessionTest, TellsAScanOfALostBusFromAnEmptyOne) {
   open("gsd600@3");
   bench->broken = true;

@@ -22,6 +22,7 @@ struct Trouble {
   int silent_at = -1;
   int abort_at = -1;
   int cancel_at = -1;
+  std::optional<ObjectAddress> stuck = {};  ///< Of one byte or two: what is written to it is what it was.
   int kill_at = -1;  ///< The process ends: an exception, and nothing is sent or heard after it.
 };
 
@@ -71,7 +72,7 @@ class TroubledBus final : public can::Bus {
       return {};
     }
     if (chance(trouble_.lose)) return {};
-    return bus_->send(frame);
+    return bus_->send(is_to_stuck(frame) ? as_it_is(frame) : frame);
   }
   Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
     if (killed_) return bus_->receive(deadline);
@@ -96,6 +97,17 @@ class TroubledBus final : public can::Bus {
   const std::vector<std::string>& sent() const { return sent_; }
 
  private:
+  bool is_to_stuck(const can::Frame& frame) const {
+    return trouble_.stuck && frame.id == 0x601 && (frame.data[0] & 0xE0U) == 0x20U &&
+           (frame.data[1] | frame.data[2] << 8U) == trouble_.stuck->index &&
+           frame.data[3] == trouble_.stuck->sub;
+  }
+  /// 0 and 1 are all that a switch has.
+  static can::Frame as_it_is(can::Frame frame) {
+    frame.data[4] ^= 1U;
+    return frame;
+  }
+
   /// Longer than the patience for an answer.
   static constexpr Duration kLateness = std::chrono::milliseconds(700);
 

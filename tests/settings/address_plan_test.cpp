@@ -1,5 +1,5 @@
 // A plan of addresses: in an order without collisions, and gone on with from wherever it was cut off.
-#include "settings/address_plan_run.hpp"
+#include "tests/settings/address_plan_world.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,6 @@
 namespace servoctl::settings {
 namespace {
 
-namespace fs = std::filesystem;
 using Taken = std::set<std::uint8_t>;
 
 std::string order_of(const char* csv, const Taken& taken) {
@@ -51,43 +50,25 @@ TEST(AddressPlan, RefusesACircleWhereNoNodeIsFree) {
 }
 
 TEST(AddressPlan, NamesTheLineOfWhatIsWrong) {
-  const std::pair<const char*, const char*> rows[] = {{"node,new\n0,5\n", "plan.csv:2"},
-                                                      {"node,new\n1,128\n", "plan.csv:2"},
-                                                      {"node,new\n1,5\n1,6\n", "plan.csv:3"},
-                                                      {"node,new\n1,5\n2,5\n", "plan.csv:3"},
-                                                      {"node,to\n1,5\n", "unknown column"},
-                                                      {"node\n1\n", "node and new"},
-                                                      {"node,new\n", "no drive"},
-                                                      {"node,new,bitrate\n1,2,fast\n", "plan.csv:2"},
-                                                      {"node,new,serial\n1,2,abc\n", "plan.csv:2"},
-                                                      {"", ""},
-                                                      {"node,new\n1,\n", "plan.csv:2"}};
+  const std::pair<const char*, const char*> rows[] = {
+      {"node,new\n0,5\n", "plan.csv:2"},
+      {"node,new\n1,128\n", "plan.csv:2"},
+      {"node,new\n1,5\n1,6\n", "plan.csv:3"},
+      {"node,new\n1,5\n2,5\n", "plan.csv:3"},
+      {"node,to\n1,5\n", "unknown column"},
+      {"node\n1\n", "node and new"},
+      {"node,new\n", "no drive"},
+      {"node,new,bitrate\n1,2,fast\n", "plan.csv:2"},
+      {"node,new,bitrate\n1,5,500k\n2,2,250k\n", "plan.csv:3"},
+      {"node,new,serial\n1,2,abc\n", "plan.csv:2"},
+      {"", ""},
+      {"node,new\n1,\n", "plan.csv:2"}};
   for (const auto& [csv, part] : rows) {
     const auto read = parse_address_plan(csv, "plan.csv");
     ASSERT_FALSE(read) << csv;
     EXPECT_NE(read.error().message.find(part), std::string::npos) << csv << ": " << read.error().message;
   }
 }
-
-class PlanOfAddresses : public testing::Test {
- protected:
-  PlanOfAddresses() { fs::create_directories(folder_); }
-  ~PlanOfAddresses() override { fs::remove_all(folder_); }
-
-  Result<report::Value> run(AddressWorld& world, bool resume = false) {
-    return run_address_plan(world.desk, text_, file_, {.each = {}, .resume = resume});
-  }
-  std::string nodes(const AddressWorld& world) const {
-    std::string out;
-    for (const auto& drive : world.drives) out += fmt::format("{}{}", out.empty() ? "" : " ", drive->node());
-    return out;
-  }
-  bool has_journal() const { return fs::exists(address_journal_of(file_)); }
-
-  const fs::path folder_ = fs::path(testing::TempDir()) / fmt::format("servoctl-address-{}", ::getpid());
-  const fs::path file_ = folder_ / "plan.csv";
-  std::string text_ = "node,new\n1,2\n2,3\n3,1\n4,14\n";
-};
 
 TEST_F(PlanOfAddresses, PutsEveryDriveWhereItIsToBe) {
   AddressWorld world("gsd600", {1, 2, 3, 4});

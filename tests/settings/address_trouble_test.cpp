@@ -79,6 +79,8 @@ TEST(AddressTrouble, ADriveThatStaysAwayIsToldOf) {
   EXPECT_EQ(outcome.end, AddressEnd::failed);
   ASSERT_TRUE(outcome.error);
   EXPECT_EQ(outcome.error->code, Errc::timeout);
+  EXPECT_NE(outcome.error->hint.find("switch it off and on, and look"), std::string::npos)
+      << outcome.error->hint;
 }
 
 TEST(AddressTrouble, ABusThatIsLostBehindTheWriteLeavesTheEndOpenAndSaysSo) {
@@ -92,6 +94,27 @@ TEST(AddressTrouble, ABusThatIsLostBehindTheWriteLeavesTheEndOpenAndSaysSo) {
   EXPECT_EQ(outcome.error->code, Errc::bus);
   EXPECT_NE(outcome.error->message.find("was told to be node 5"), std::string::npos)
       << outcome.error->message;
+}
+
+TEST(AddressTrouble, ABusThatIsLostBehindTheRestartSaysTheSame) {
+  // While it starts, and when it is looked for.
+  for (const bool starts : {true, false}) {
+    AddressWorld world("gsd600", {3});
+    std::optional<TimePoint> restarted;
+    world.hooks.before_send = [&](const can::Frame& frame) {
+      if (is_reset(frame)) restarted = world.bus.now();
+      world.hooks.lost = world.hooks.lost || (!starts && restarted && frame.id >= 0x600);
+    };
+    world.hooks.on_time = [&](TimePoint now) {
+      world.hooks.lost = world.hooks.lost || (starts && restarted && now >= *restarted);
+    };
+    const auto outcome = move_to(world, 3, 5);
+    EXPECT_EQ(outcome.end, AddressEnd::failed);
+    ASSERT_TRUE(outcome.error);
+    EXPECT_EQ(outcome.error->code, Errc::bus);
+    EXPECT_NE(outcome.error->message.find("was told to be node 5"), std::string::npos)
+        << outcome.error->message;
+  }
 }
 
 TEST(AddressTrouble, CtrlCIsHeardWhileTheDriveIsWaitedForAndNotBetweenWriteAndStore) {

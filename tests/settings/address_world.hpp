@@ -61,9 +61,11 @@ class AddressWorld {
     for (const auto node : nodes) add(node);
     restart_session();
   }
-  sim::SimDrive& add(std::uint8_t node) {
+  sim::SimDrive& add(std::uint8_t node) { return add(node, profile); }
+  /// Of another family, which outlives the world.
+  sim::SimDrive& add(std::uint8_t node, const drive::Profile& family) {
     const auto key = std::to_string(drives.size() + 1);
-    drives.push_back(std::make_unique<sim::SimDrive>(profile, node, memory, key));
+    drives.push_back(std::make_unique<sim::SimDrive>(family, node, memory, key));
     bus.attach(*drives.back());
     return *drives.back();
   }

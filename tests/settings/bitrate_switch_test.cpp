@@ -1,111 +1,18 @@
 // Drives and the interface of their bus go to another bitrate together: nobody is left behind, and where it
 // fails the error says where everybody is.
-#include "settings/bitrate_switch.hpp"
-
 #include <gtest/gtest.h>
 
-#include <map>
-#include <set>
-
-#include "tests/session/fake_link.hpp"
-#include "tests/settings/address_world.hpp"
+#include "tests/settings/bitrate_cell.hpp"
 
 namespace servoctl::settings {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// A wire on which nodes at another bitrate than the interface hear nothing, and are not heard.
-class TunedWire final : public can::Bus {
- public:
-  TunedWire(AddressWorld& world, session::FakeLink*& link) : world_(&world), link_(&link) {}
-
-  TimePoint now() const override { return world_->bus.now(); }
-  TimePoint next_event() const override { return world_->bus.next_event(); }
-  Result<void> send(const can::Frame& frame) override {
-    if (!(*link_)->now.up) return fail(Errc::bus, "can0 is down");
-    world_->sent.push_back(can::to_string(frame));
-    const bool command = frame.id == 0;
-    if (!command && !hears(static_cast<std::uint8_t>(frame.id & 0x7FU))) return {};
-    const auto sent = world_->bus.send(frame);
-    if (is_reset(frame)) after_reset();
-    return sent;
-  }
-  Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
-    if (world_->hooks.on_time) world_->hooks.on_time(now());
-    for (;;) {
-      auto frame = world_->bus.receive(deadline);
-      if (!frame || !*frame) return frame;
-      if ((*link_)->now.up && hears(static_cast<std::uint8_t>((*frame)->id & 0x7FU))) return frame;
-    }
-  }
-  Result<void> recover(TimePoint) override {
-    return (*link_)->now.up ? Result<void>() : fail(Errc::bus, "can0 is down");
-  }
-
-  std::map<std::uint8_t, std::uint32_t> rates;  ///< By node; 0: it is off.
-  std::set<std::uint8_t> deaf;                  ///< A reset is not heard.
-
- private:
-  bool hears(std::uint8_t node) const {
-    return rates.count(node) > 0 && rates.at(node) == (*link_)->now.bitrate;
-  }
-  void after_reset() {
-    for (auto& [node, rate] : rates)
-      if (deaf.count(node) == 0) rate = 125'000;
-  }
-
-  AddressWorld* world_;
-  session::FakeLink** link_;
-};
-
-struct Cell {
-  explicit Cell(const std::string& family, std::vector<std::uint8_t> nodes = {3, 4}) : world(family, nodes) {
-    auto bus = std::make_unique<TunedWire>(world, link);
-    wire = bus.get();
-    for (const auto node : nodes) wire->rates[node] = 250'000;
-    world.restart_session(std::move(bus));
-  }
-
-  std::vector<AddressChange> changes(const std::vector<std::uint8_t>& nodes = {3, 4}) {
-    std::vector<AddressChange> out;
-    for (const auto node : nodes) {
-      auto change = plan_address(world.desk, node, {.bitrate = 125'000});
-      EXPECT_TRUE(change) << change.error().message;
-      if (change) out.push_back(std::move(*change));
-    }
-    return out;
-  }
-  BitrateSwitch plan(std::span<const AddressChange> all, AddressOptions options = {}) {
-    auto plan = plan_switch(world.desk, std::exchange(owned, nullptr), all, 125'000, options, true);
-    EXPECT_TRUE(plan) << plan.error().message;
-    return plan ? std::move(*plan) : BitrateSwitch{};
-  }
-  std::vector<AddressOutcome> run(AddressOptions options = {}) {
-    const auto all = changes();
-    auto follower = plan(all, options);
-    EXPECT_TRUE(follower.follows()) << follower.why_not;
-    std::vector<AddressOutcome> out;
-    for (const auto& change : all) out.push_back(change_address(world.desk, change, options));
-    for (const auto& each : out) EXPECT_EQ(each.end, AddressEnd::awaits_restart);
-    follow_bitrate(world.desk, follower, all, out, options);
-    kept = std::move(follower.link);
-    return out;
-  }
-  std::uint32_t bitrate() const { return link->now.bitrate.value_or(0); }
-
-  std::unique_ptr<session::FakeLink> owned =
-      std::make_unique<session::FakeLink>(session::controller(true, 250'000));
-  session::FakeLink* link = owned.get();
-  std::unique_ptr<can::LinkControl> kept;
-  AddressWorld world;
-  TunedWire* wire = nullptr;
-};
-
 class BitrateOf : public testing::TestWithParam<const char*> {};
 
 TEST_P(BitrateOf, DrivesAreRestartedByOneCommandAndFoundAtTheNewBitrate) {
-  Cell cell(GetParam());
+  BitrateCell cell(GetParam());
   const auto out = cell.run();
   ASSERT_EQ(out.size(), 2U);
   for (const auto& each : out) {
@@ -124,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(Families, BitrateOf, testing::Values("gsd600", "da200")
                          [](const auto& family) { return std::string(family.param); });
 
 TEST(BitrateSwitch, DrivesThatAreSwitchedOffAndOnAreWaitedForAtBothEnds) {
-  Cell cell("ts");
+  BitrateCell cell("ts");
   const auto start = cell.world.bus.now();
   std::optional<std::uint32_t> when_off;
   cell.world.hooks.on_time = [&](TimePoint now) {
@@ -142,7 +49,7 @@ TEST(BitrateSwitch, DrivesThatAreSwitchedOffAndOnAreWaitedForAtBothEnds) {
 }
 
 TEST(BitrateSwitch, DrivesThatNobodySwitchesOffKeepTheInterfaceWithThem) {
-  Cell cell("ts");
+  BitrateCell cell("ts");
   const auto out = cell.run({.unlock = true, .patience = 10s});
   ASSERT_TRUE(out[0].error);
   EXPECT_EQ(out[0].end, AddressEnd::awaits_restart);
@@ -153,7 +60,7 @@ TEST(BitrateSwitch, DrivesThatNobodySwitchesOffKeepTheInterfaceWithThem) {
 }
 
 TEST(BitrateSwitch, CtrlCWhileTheyAreWaitedForLeavesTheInterface) {
-  Cell cell("ts");
+  BitrateCell cell("ts");
   const auto start = cell.world.bus.now();
   cell.world.session->options().cancelled = [&] { return cell.world.bus.now() > start + 5s; };
   const auto out = cell.run({.unlock = true, .patience = 60s});
@@ -163,19 +70,61 @@ TEST(BitrateSwitch, CtrlCWhileTheyAreWaitedForLeavesTheInterface) {
 }
 
 TEST(BitrateSwitch, WhereNoneTookItTheInterfaceGoesBackToThem) {
-  Cell cell("gsd600");
+  BitrateCell cell("gsd600");
   cell.wire->deaf = {3, 4};
   const auto out = cell.run();
   ASSERT_TRUE(out[0].error);
   EXPECT_EQ(out[0].end, AddressEnd::awaits_restart);
   EXPECT_NE(out[0].error->message.find("still answers at 250 kbit/s"), std::string::npos)
       << out[0].error->message;
+  EXPECT_NE(out[0].error->hint.find("--wait 5min"), std::string::npos) << out[0].error->hint;
   EXPECT_EQ(cell.bitrate(), 250'000U);
   EXPECT_TRUE(cell.link->now.up);
 }
 
+TEST(BitrateSwitch, WhereNobodyAnswersAtEitherTheInterfaceStaysAtTheNewOne) {
+  for (const bool refuses : {false, true}) {
+    BitrateCell cell("gsd600");
+    cell.wire->deaf = {3, 4};
+    cell.world.hooks.on_time = [&](TimePoint) {
+      if (cell.world.count("000#8100") > 0)
+        for (auto& [node, rate] : cell.wire->rates) rate = 0;
+    };
+    int times = 0;
+    if (refuses)
+      cell.link->refuses = [&](const can::LinkChange& change) {
+        return change.bitrate == 125'000U && ++times > 1 ? EINVAL : 0;
+      };
+    const auto out = cell.run();
+    ASSERT_TRUE(out[0].error);
+    EXPECT_EQ(out[0].end, AddressEnd::failed);
+    EXPECT_EQ(out[0].error->code, Errc::timeout);
+    EXPECT_NE(out[0].error->message.find("no drive answers at 125 kbit/s"), std::string::npos)
+        << out[0].error->message;
+    EXPECT_NE(out[0].error->hint.find(refuses ? "`bus status` shows" : "can0 has it now"), std::string::npos)
+        << out[0].error->hint;
+    EXPECT_EQ(cell.bitrate(), refuses ? 250'000U : 125'000U);
+  }
+}
+
+TEST(BitrateSwitch, CtrlCBehindTheCommandIsHeardWhereTheInterfaceHasFollowed) {
+  BitrateCell between("gsd600");
+  between.world.session->options().cancelled = [&] {
+    return between.world.count("000#8100") > 0 && between.bitrate() == 250'000U;
+  };
+  for (const auto& each : between.run()) EXPECT_EQ(each.end, AddressEnd::at_bitrate);
+  BitrateCell behind("gsd600");
+  behind.world.session->options().cancelled = [&] { return behind.bitrate() == 125'000U; };
+  const auto out = behind.run();
+  ASSERT_TRUE(out[0].error);
+  EXPECT_EQ(out[0].error->code, Errc::interrupted);
+  EXPECT_NE(out[0].error->message.find("can0 is at 125 kbit/s now; where the drives are was not seen"),
+            std::string::npos)
+      << out[0].error->message;
+}
+
 TEST(BitrateSwitch, OneThatIsMissingIsNamedAndTheOthersAreFound) {
-  Cell cell("gsd600");
+  BitrateCell cell("gsd600");
   cell.wire->deaf = {4};
   const auto out = cell.run();
   EXPECT_EQ(out[0].end, AddressEnd::at_bitrate) << (out[0].error ? out[0].error->message : "");
@@ -188,7 +137,7 @@ TEST(BitrateSwitch, OneThatIsMissingIsNamedAndTheOthersAreFound) {
 }
 
 TEST(BitrateSwitch, AnInterfaceThatCannotFollowSaysWhereTheDrivesAre) {
-  Cell cell("gsd600");
+  BitrateCell cell("gsd600");
   cell.link->refuses = [](const can::LinkChange& change) { return change.bitrate == 125'000U ? EINVAL : 0; };
   const auto out = cell.run();
   ASSERT_TRUE(out[0].error);
@@ -200,7 +149,7 @@ TEST(BitrateSwitch, AnInterfaceThatCannotFollowSaysWhereTheDrivesAre) {
 }
 
 TEST(BitrateSwitch, DrivesThatHaveItForTheirNextStartAreOnlyRestarted) {
-  Cell cell("gsd600");
+  BitrateCell cell("gsd600");
   for (const auto& change : cell.changes()) (void)change_address(cell.world.desk, change, {});
   cell.world.sent.clear();
   const auto all = cell.changes();
@@ -215,7 +164,7 @@ TEST(BitrateSwitch, DrivesThatHaveItForTheirNextStartAreOnlyRestarted) {
 }
 
 TEST(BitrateSwitch, ADriveWithABitrateForItsNextStartIsNotRestartedAloneToMove) {
-  Cell cell("gsd600");
+  BitrateCell cell("gsd600");
   for (const auto& change : cell.changes()) (void)change_address(cell.world.desk, change, {});
   const auto change = plan_address(cell.world.desk, 3, {.node = 5, .bitrate = 125'000});
   ASSERT_TRUE(change) << change.error().message;
@@ -223,22 +172,42 @@ TEST(BitrateSwitch, ADriveWithABitrateForItsNextStartIsNotRestartedAloneToMove) 
   EXPECT_EQ(cell.world.count("000#8103"), 0U);
 }
 
+TEST(BitrateSwitch, ADriveWithABitrateForItsNextStartIsNotMovedByItsNumberAlone) {
+  BitrateCell cell("gsd600");
+  for (const auto& change : cell.changes()) (void)change_address(cell.world.desk, change, {});
+  cell.world.sent.clear();
+  const auto change = plan_address(cell.world.desk, 3, {.node = 5, .bus_bitrate = 250'000});
+  ASSERT_FALSE(change);
+  EXPECT_EQ(change.error().code, Errc::refused);
+  EXPECT_EQ(
+      change.error().message,
+      "node 3, object 0x2000:31h: it starts at 125 kbit/s next, and its bus has 250 kbit/s: to move it is to start anew, and it "
+      "would be gone");
+  EXPECT_NE(change.error().hint.find("address --bitrate 250000 -n 3"), std::string::npos)
+      << change.error().hint;
+  for (const auto& frame : cell.world.sent) EXPECT_FALSE(frame.starts_with("603#2")) << frame;
+  EXPECT_TRUE(plan_address(cell.world.desk, 3, {.node = 5, .bus_bitrate = 125'000})) << "it fits its bus";
+  EXPECT_TRUE(plan_address(cell.world.desk, 3, {.node = 5, .bitrate = 125'000, .bus_bitrate = 250'000}))
+      << "it is to go there";
+  EXPECT_TRUE(plan_address(cell.world.desk, 3, {.node = 5})) << "nobody knows what the bus has";
+}
+
 TEST(BitrateSwitch, LeavesAnInterfaceAloneThatWouldLeaveSomebodyBehind) {
-  Cell cell("gsd600");
+  BitrateCell cell("gsd600");
   const auto plan = cell.plan(cell.changes({3}));
   EXPECT_FALSE(plan.follows());
   EXPECT_NE(plan.why_not.find("node 4 would be left at 250 kbit/s"), std::string::npos) << plan.why_not;
 }
 
 TEST(BitrateSwitch, DrivesThatWaitForTheirPowerNeedSomebodyWhoWaits) {
-  Cell cell("ts");
+  BitrateCell cell("ts");
   const auto plan = cell.plan(cell.changes());
   EXPECT_FALSE(plan.follows());
   EXPECT_NE(plan.why_not.find("--wait"), std::string::npos) << plan.why_not;
 }
 
 TEST(BitrateSwitch, NeedsTheRightAndAnInterfaceWithABitrate) {
-  Cell cell("gsd600");
+  BitrateCell cell("gsd600");
   const auto all = cell.changes();
   auto right = plan_switch(cell.world.desk, std::exchange(cell.owned, nullptr), all, 125'000, {}, false);
   ASSERT_TRUE(right);
@@ -255,7 +224,7 @@ TEST(BitrateSwitch, NeedsTheRightAndAnInterfaceWithABitrate) {
 }
 
 TEST(BitrateSwitch, SaysBeforeWhatItWillDo) {
-  Cell cell("gsd600");
+  BitrateCell cell("gsd600");
   const auto all = cell.changes();
   const auto plan = cell.plan(all);
   EXPECT_EQ(switch_text(plan, all.front()),

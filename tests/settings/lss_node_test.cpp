@@ -86,6 +86,18 @@ TEST_F(LssNode, ASlaveThatAcknowledgesAndDoesNotStartIsTold) {
   EXPECT_EQ(outcome.result, "set; not found");
 }
 
+/// CANopenNode's slaves do not know the question for those without a node-ID.
+TEST_F(LssNode, ThatIsTakenAwayIsSeenInASlaveThatDoesNotSayThatItHasNone) {
+  build("sv2@3?lss");
+  hooks.change_answer = [](can::Frame& frame) {
+    if (frame.data[0] == 0x50) frame.data[0] = 0;
+  };
+  const auto outcome = give(canopen::kUnconfigured);
+  EXPECT_FALSE(outcome.error) << outcome.error->message;
+  EXPECT_EQ(outcome.result, "without a node-ID now");
+  EXPECT_TRUE(all_wait());
+}
+
 TEST_F(LssNode, ThatSomebodyUsesIsRefusedBeforeAnythingIsSet) {
   build("sv2@3,gsd600@7?lss");
   std::vector<std::uint8_t> services;

@@ -1,140 +1,12 @@
 // A restore whose process is killed at any step can be gone on with, and can be undone.
-#include "settings/restoring.hpp"
-
 #include <gtest/gtest.h>
 
-#include <fmt/format.h>
-#include <unistd.h>
-#include <filesystem>
+#include <algorithm>
 
-#include "drive/quantity.hpp"
-#include "session/can_network.hpp"
-#include "settings/restore_journal.hpp"
-#include "tests/session/troubled_bus.hpp"
-#include "tests/show/audiences.hpp"
-#include "tests/source_dir.hpp"
+#include "restoring_world.hpp"
 
 namespace servoctl::settings {
 namespace {
-
-namespace fs = std::filesystem;
-using namespace std::chrono_literals;
-using session::Killed;
-using session::Trouble;
-using session::TroubledBus;
-
-struct Setting {
-  const char* name;
-  std::int64_t wanted;
-};
-
-struct Case {
-  const char* family;
-  std::vector<Setting> settings;
-  bool unlock;
-};
-
-/// A drive, a backup that differs from it, and a folder for files.
-class World {
- public:
-  explicit World(const Case& c)
-      : profile_(drive::load_profile(c.family, kFolders).value()), drive_(profile_, 1, memory_, "1") {
-    fs::create_directories(folder_);
-    bus_.attach(drive_);
-    for (const auto& setting : c.settings) {
-      const auto target = drive::resolve(&profile_, setting.name).value();
-      objects_.push_back(target.address);
-      Backup::Entry entry;
-      entry.object = target.address;
-      entry.type = drive::meaning(target, 1).type;
-      entry.bytes = od::encode(entry.type, od::Value(setting.wanted)).value();
-      backup.entries.push_back(entry);
-    }
-    for (const auto& mean : drive::means_of_writing(profile_)) means_.push_back(mean.first);
-    backup.family = c.family;
-    backup.identity.node = 1;
-    before = read(objects_);
-    means_before = read(means_);
-  }
-  ~World() { fs::remove_all(folder_); }
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
-
-  /// Runs one restore; true when it was not killed and had no error.
-  bool run(const Backup& what, const std::string& title, const fs::path& saved, RestoringOptions options,
-           int kill_at, const fs::path& undoes = {}) {
-    Trouble trouble;
-    trouble.kill_at = kill_at;
-    auto bus = std::make_unique<TroubledBus>(bus_, drive_, trouble, 1);
-    const auto* counted = bus.get();
-    session::Session session(std::move(bus), "sim", {});
-    show::Desk desk;
-    desk.session = &session;
-    desk.profile = &profile_;
-    desk.nodes = {1};
-    show::Willing willing;
-    desk.audience = &willing;
-    try {
-      const auto done = put_into(desk, what, title, 1, saved, options, undoes);
-      frames = counted->frames();
-      EXPECT_TRUE(done) << done.error().message;
-      for (const auto& error : desk.errors) ADD_FAILURE() << error.message;
-      return done && desk.errors.empty();
-    } catch (const Killed&) {
-      return false;
-    }
-  }
-
-  /// Runs one restore of the backup on a bus without trouble.
-  Result<Restored> put(const RestoringOptions& options) {
-    auto bus = std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1);
-    session::Session session(std::move(bus), "sim", {});
-    show::Desk desk;
-    desk.session = &session;
-    desk.profile = &profile_;
-    show::Willing willing;
-    desk.audience = &willing;
-    return put_into(desk, backup, "drive.json", 1, saved(), options);
-  }
-
-  session::Values read(const std::vector<ObjectAddress>& objects) {
-    session::Session session(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "sim", {});
-    (void)session.wait([] { return false; }, session.now() + 1s);
-    session::Values out;
-    for (const auto object : objects) out.emplace(object, session.upload(1, object).value());
-    return out;
-  }
-  void power_cycle() {
-    session::Session session(std::make_unique<TroubledBus>(bus_, drive_, Trouble{}, 1), "sim", {});
-    EXPECT_TRUE(session.can()->send(*can::parse_frame("000#8101")));
-    (void)session.wait([] { return false; }, session.now() + 1s);
-  }
-  void expect_values_of_backup() {
-    const auto now = read(objects_);
-    for (const auto& entry : backup.entries) EXPECT_EQ(now.at(entry.object), *entry.bytes);
-  }
-  session::Values values() { return read(objects_); }
-  session::Values means() { return read(means_); }
-  fs::path saved() const { return folder_ / "drive.json.before-node-1.json"; }
-
-  Backup backup;
-  session::Values before;
-  session::Values means_before;
-  int frames = 0;
-
- private:
-  static const std::vector<fs::path> kFolders;
-
-  fs::path folder_ = fs::temp_directory_path() / fmt::format("servoctl-restoring-{}", ::getpid());
-  drive::Profile profile_;
-  sim::SimBus bus_{sim::SimBus::Clock::virtual_time};
-  sim::Memory memory_;
-  sim::SimDrive drive_;
-  std::vector<ObjectAddress> objects_;
-  std::vector<ObjectAddress> means_;
-};
-
-const std::vector<fs::path> World::kFolders = {fs::path(source_dir()) / "eds"};
 
 class KilledRestore : public testing::TestWithParam<Case> {
  protected:
@@ -217,6 +89,47 @@ TEST_P(KilledRestore, IsRefusedWhereTheDriveHasChangedSinceItWasAgreedTo) {
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_FALSE(done->failed);
   world.expect_values_of_backup();
+}
+
+bool is_told(const World& world, const char* text) {
+  return std::any_of(world.notices.begin(), world.notices.end(),
+                     [&](const auto& notice) { return notice.find(text) != std::string::npos; });
+}
+
+TEST(KeptAddress, IsNamedWhereTheBackupHasAnother) {
+  World world({"gsd600", {{"Pn0214", 450}, {"Pn0048", 5}, {"Pn0049", 7}}, false});
+  ASSERT_TRUE(world.put({}));
+  EXPECT_TRUE(is_told(world, "node 1: Pn0048 CAN bitrate stays 8 1000 kbit/s; drive.json has 5 250 kbit/s"));
+  EXPECT_TRUE(is_told(world, "node 1: Pn0049 CAN node-ID stays 1; drive.json has 7, which only"));
+  EXPECT_EQ(world.values().at({0x2000, 0x32}), world.before.at({0x2000, 0x32}));
+  world.backup.identity.node = 7;
+  ASSERT_TRUE(world.put({}));
+  EXPECT_FALSE(is_told(world, "node-ID stays")) << "that of another drive";
+  EXPECT_TRUE(is_told(world, "bitrate stays"));
+  world.chinese = true;
+  ASSERT_TRUE(world.put({}));
+  EXPECT_TRUE(is_told(world, "node 1: Pn0048 CAN 总线波特率设置 stays"));
+  world.chinese = false;
+  RestoringOptions whole;
+  whole.choice.with_address = true;
+  ASSERT_TRUE(world.put(whole));
+  EXPECT_FALSE(is_told(world, " stays "));
+}
+
+/// How a restore says that it ended.
+std::string ended(const Result<Restored>& done) {
+  const auto* state = done ? report::find(done->answer, "result") : nullptr;
+  return state == nullptr ? "" : std::get<std::string>(state->data());
+}
+
+TEST(KeptAddress, IsOnlyNamedWhereItIsAnotherAndAnAddress) {
+  World world({"gsd600", {{"Pn0214", 450}, {"Pn0048", 5}, {"Pn0049", 7}}, false});
+  ASSERT_TRUE(world.put({}));
+  EXPECT_FALSE(is_told(world, "Pn0214")) << "it is restored";
+  EXPECT_EQ(ended(world.put({})), "nothing else differs");
+  for (auto& entry : world.backup.entries) entry.bytes = world.values().at(entry.object);
+  EXPECT_EQ(ended(world.put({})), "nothing differs");
+  EXPECT_FALSE(is_told(world, " stays "));
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -25,11 +25,16 @@ TEST(AxisNames, StandBeforeTheNodeInResults) {
   report::Value record(report::Record{{"node", 3}, {"nodes", report::List{report::Record{{"node", 5}}}}});
   kNames.put_into(record);
   EXPECT_EQ(report::to_json(record), R"({"axis":"feeder","node":3,"nodes":[{"node":5}]})");
-  report::Table table{.columns = {{"value"}, {"node"}}, .rows = {{1, 4}, {2, 5}}};
+  report::Table table;
+  table.columns = {{"value"}, {"node"}};
+  table.rows = {{1, 4}, {2, 5}};
   report::Value value(std::move(table));
   kNames.put_into(value);
   EXPECT_EQ(report::to_json(value),
             R"([{"value":1,"axis":"lift","node":4},{"value":2,"axis":null,"node":5}])");
+  report::Value error(report::Record{{"axis"}, {"node", 3}});
+  kNames.put_into(error);
+  EXPECT_EQ(report::to_json(error), R"({"axis":"feeder","node":3})");
   kNames.put_into(value);  // A second time nothing is added.
   EXPECT_EQ(report::to_json(value),
             R"([{"value":1,"axis":"lift","node":4},{"value":2,"axis":null,"node":5}])");

@@ -50,6 +50,17 @@ TEST(TopicQuery, FindsNamesWhateverTheirCaseWidthAndBlanks) {
     EXPECT_EQ(found(words, inputs()), "name") << words;
 }
 
+TEST(TopicQuery, ReadsADisplayWithoutItsMarksAndZeros) {
+  for (const auto* typed : {"AL.09", "AL09", "al9", "AL 9", "al-09"})
+    EXPECT_TRUE(TopicQuery(typed).names_display("AL.09")) << typed;
+  EXPECT_TRUE(TopicQuery("err 12").names_display("Err-12"));
+  EXPECT_TRUE(TopicQuery("er12-2").names_display("Er12-2"));
+  EXPECT_FALSE(TopicQuery("er1-22").names_display("Er12-2"));
+  for (const auto* typed : {"AL.90", "AL", "9", "09"})
+    EXPECT_FALSE(TopicQuery(typed).names_display("AL.09")) << typed;
+  EXPECT_FALSE(TopicQuery("99").names_display("99"));
+}
+
 TEST(TopicQuery, FindsValuesOfAnObjectByItsIndexItsNameAndItsKind) {
   for (const auto* words : {"6098h=7", "0x6098 = 7", "homing_method=7", "6098 7", "homing method 7",
                             "homing 7", "home method 7", "Homing Method 0x7", "回零方式7", "回零 7"})

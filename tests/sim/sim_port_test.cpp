@@ -76,7 +76,8 @@ TEST(EscCell, WhatIsWrongInTheTextIsTold) {
       "short, mailbox, emergency, fall, free-run, power or cut");
   EXPECT_EQ(refused("sv2@1?delay=20").message.substr(0, 7), "delay: ");
   EXPECT_EQ(refused("sv2@1?fault=nonsense").message,
-            "'fault=nonsense' is not CODE@TIME or PANEL@TIME, such as fault=0xFF00@2s");
+            "'fault=nonsense' is not CODE@TIME or PANEL@TIME; options stand behind all drives: "
+            "sim:gsd600@1,dm@2?fault=0xFF00@2s");
 }
 
 TEST(EscCell, OptionsReachEverySlave) {

@@ -2,16 +2,13 @@
 // what the doctor makes of them.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "can/candump.hpp"
-#include "traffic/link_findings.hpp"
+#include "finding_codes.hpp"
 
 namespace servoctl::traffic {
 namespace {
 
 using std::chrono::milliseconds;
-using Codes = std::vector<std::string>;
 
 /// An error frame: class in the identifier, data[1] controller, [2] kind, [3] place, [4] transceiver.
 can::Frame error_frame(std::uint32_t id, std::array<std::uint8_t, 8> data = {}) {
@@ -45,24 +42,6 @@ const auto kOverflow = error_frame(0x004, {0, 0x01});
 const auto kOverflowBySlcan = error_frame(0x08C, {0, 0x01});
 const auto kBusOff = error_frame(0x040);
 
-LinkFacts facts(std::uint16_t tx = 0, std::uint16_t rx = 0,
-                can::LinkHealth health = can::LinkHealth::error_active) {
-  LinkFacts out;
-  out.name = "can0";
-  out.state.kind = "can";
-  out.state.up = true;
-  out.state.bitrate = 500'000;
-  out.state.sample_point = 875;
-  out.state.restart_ms = 100;
-  out.state.queue_length = 1000;
-  out.state.tx_errors = tx;
-  out.state.rx_errors = rx;
-  out.state.health = health;
-  out.before = out.state;
-  out.may_change = true;
-  return out;
-}
-
 BusPicture picture(const std::vector<can::Frame>& frames, Duration period = milliseconds(10)) {
   BusPicture out(500'000, TimePoint{});
   TimePoint time{};
@@ -76,19 +55,6 @@ std::vector<can::Frame> times(std::size_t count, const can::Frame& frame) { retu
 std::vector<can::Frame> operator+(std::vector<can::Frame> a, const std::vector<can::Frame>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
-}
-
-/// The notes and faults.
-Codes codes(const std::vector<Finding>& findings) {
-  Codes out;
-  for (const auto& f : findings)
-    if (f.level != Finding::Level::ok) out.push_back(f.code);
-  return out;
-}
-
-const Finding* finding(const std::vector<Finding>& all, std::string_view code) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Finding& f) { return f.code == code; });
-  return found == all.end() ? nullptr : &*found;
 }
 
 TEST(BusFindings, OfAHealthyBusAreNoFaults) {
@@ -129,6 +95,31 @@ TEST(BusFindings, KnowOneThatIsAloneByItsCountersWhereTheDriverTellsNoErrors) {
   EXPECT_EQ(codes(bus_findings(picture(times(9, heartbeat(1))), &known)), Codes{"error-passive"});
 }
 
+TEST(BusFindings, CallNobodyAloneWhoseCountersHaveAnotherReason) {
+  const auto passive = can::LinkHealth::error_passive;
+  const auto few = facts(100, 0, passive);
+  EXPECT_EQ(codes(bus_findings(picture({}), &few)), (Codes{"silence", "error-passive"}));
+  const auto both = facts(128, 130, passive);
+  EXPECT_EQ(codes(bus_findings(picture({}), &both)), (Codes{"wrong-bitrate", "error-passive"}));
+  const auto off = facts(128, 0, can::LinkHealth::bus_off);
+  EXPECT_EQ(codes(bus_findings(picture({}), &off)), Codes{"silence"});
+  const auto damaged = facts(128, 0, passive);
+  EXPECT_EQ(codes(bus_findings(picture(times(5, kStuff)), &damaged)),
+            (Codes{"wrong-bitrate", "error-passive"}));
+}
+
+TEST(BusFindings, SayWhatIsToBeDoneForTheInterfaceThatThereIs) {
+  const auto known = facts();
+  EXPECT_EQ(bus_findings(picture({}), &known).front().mend, "`doctor can0 --active` asks them");
+  EXPECT_EQ(bus_findings(picture({}), nullptr).front().mend, "`doctor --active` asks them");
+  const auto deaf = facts(0, 130);
+  const auto found = bus_findings(picture({}), &deaf);
+  EXPECT_EQ(found.front().text, "errors and not one frame: error counter rx 130");
+  EXPECT_NE(found.front().means.find("another bitrate than 500 kbit/s"), std::string::npos);
+  EXPECT_NE(bus_findings(picture(times(9, kStuff)), nullptr).front().mend.find("bus detect slcan:PORT"),
+            std::string::npos);
+}
+
 TEST(BusFindings, TakeErrorsWithoutAFrameForAnotherBitrate) {
   const auto known = facts(0, 128);
   const auto found = bus_findings(picture(times(30, kStuff) + times(4, kForm)), &known);
@@ -159,10 +150,19 @@ TEST(BusFindings, TakeErrorsAmongFramesForTheTerminators) {
   EXPECT_EQ(codes(found), Codes{"damaged-frames"});
   EXPECT_NE(found.front().text.find("(20.0 %)"), std::string::npos) << found.front().text;
   EXPECT_NE(found.front().mend.find("60 ohm"), std::string::npos);
+  auto counted = facts();
+  counted.before->history = can::LinkHistory{.bus_errors = 5};
+  counted.state.history = can::LinkHistory{.bus_errors = 15};
+  const auto by_driver = bus_findings(picture(times(40, heartbeat(1))), &counted);
+  EXPECT_EQ(codes(by_driver), Codes{"damaged-frames"});
+  EXPECT_NE(by_driver.front().text.find("10 errors among 40 frames (20.0 %)"), std::string::npos)
+      << by_driver.front().text;
 }
 
 TEST(BusFindings, NameTheStateOfTheController) {
   const auto known = facts();
+  const auto off = facts(0, 0, can::LinkHealth::bus_off);
+  EXPECT_EQ(codes(bus_findings(picture({heartbeat(1), kBusOff}), &off)), Codes{}) << "it did not come back";
   EXPECT_EQ(codes(bus_findings(picture({heartbeat(1), kPassive}), &known)), Codes{"error-passive"});
   EXPECT_EQ(codes(bus_findings(picture({heartbeat(1), kBusOff}), &known)), Codes{"bus-off"});
   const auto warned = facts(100, 0, can::LinkHealth::error_warning);
@@ -184,6 +184,8 @@ TEST(BusFindings, TellOfOverload) {
   auto lost = facts();
   lost.state.traffic.overrun = 7;
   EXPECT_EQ(codes(bus_findings(picture({heartbeat(1)}), &lost)), Codes{"overrun"});
+  lost.before->traffic.overrun = 7;
+  EXPECT_EQ(codes(bus_findings(picture({heartbeat(1)}), &lost)), Codes{}) << "they were lost before";
   can::Frame full;
   full.id = 0x181;
   full.size = 8;
@@ -194,6 +196,8 @@ TEST(BusFindings, TellOfOverload) {
   EXPECT_EQ(
       faults_in({{"can0", bus_findings(picture(times(9000, full), std::chrono::microseconds(235)), &known)}}),
       1U);
+  EXPECT_EQ(codes(bus_findings(picture(times(7000, full), std::chrono::microseconds(300)), &known)),
+            Codes{"load"});
   EXPECT_EQ(
       faults_in({{"can0", bus_findings(picture(times(7000, full), std::chrono::microseconds(300)), &known)}}),
       0U);
@@ -212,41 +216,6 @@ TEST(BusFindings, TellOfFramesThatAreNotOfCanOpen) {
   other.extended = true;
   other.id = 0x18FEF100;
   EXPECT_EQ(codes(bus_findings(picture({other}), &known)), Codes{"foreign-frames"});
-}
-
-TEST(LinkFindings, SayWhatIsSetOtherwiseThanUsual) {
-  auto down = facts();
-  down.state.up = false;
-  down.state.bitrate.reset();
-  const auto found = link_findings(down);
-  EXPECT_EQ(codes(found), Codes{"down"});
-  EXPECT_NE(found.front().mend.find("bus up can0 --bitrate 500k"), std::string::npos);
-
-  auto odd = facts();
-  odd.state.listen_only = true;
-  odd.state.sample_point = 750;
-  odd.state.restart_ms = 0;
-  odd.state.queue_length = 10;
-  odd.may_change = false;
-  EXPECT_EQ(codes(link_findings(odd)),
-            (Codes{"listen-only", "sample-point", "no-restart", "short-queue", "no-right"}));
-  EXPECT_EQ(faults_in({{"can0", link_findings(odd)}}), 1U);
-  odd.state.bitrate = 1'000'000;  // 75 % is within what CiA 301 has there.
-  EXPECT_EQ(finding(link_findings(odd), "sample-point"), nullptr);
-
-  auto off = facts(0, 0, can::LinkHealth::bus_off);
-  off.state.history = can::LinkHistory{.bus_off = 2};
-  EXPECT_EQ(codes(link_findings(off)), (Codes{"bus-off", "was-bus-off"}));
-
-  can::LinkState plain;
-  plain.kind = "vcan";
-  plain.up = true;
-  EXPECT_EQ(codes(link_findings({.name = "vcan0", .state = plain})), Codes{});
-}
-
-TEST(LinkFindings, TellAMissingAdapterFromAMissingKernel) {
-  EXPECT_EQ(codes(no_interface_findings(true)), Codes{"no-adapter"});
-  EXPECT_EQ(codes(no_interface_findings(false)), Codes{"no-kernel-can"});
 }
 
 }  // namespace

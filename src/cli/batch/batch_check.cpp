@@ -1,11 +1,14 @@
 #include "cli/batch/batch_check.hpp"
 
 #include <fmt/format.h>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "cli/parse.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "command/written_words.hpp"
+#include "report/catalogue.hpp"
+#include "show/chinese_names.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -55,7 +58,11 @@ class Check {
       if (axis->load) context.loads.emplace(axis->node, *axis->load);
     if (const auto right = command::check_written(*line.command, line.arguments); !right) return right;
     if (line.command->check == nullptr) return {};
-    return line.command->check(context, line.arguments);
+    auto right = line.command->check(context, line.arguments);
+    // What the family calls things, nobody knows any more who tells of the file.
+    if (!right && context.profile != nullptr && shell_->defaults().shows_chinese())
+      right.error().message = report::in_chinese(right.error().message, &names_of(*context.profile));
+    return right;
   }
 
   Result<void> prepare(const ParsedLine& line, const Settings& settings, command::Context& context) {
@@ -80,8 +87,15 @@ class Check {
     return {};
   }
 
+  const report::Names& names_of(const drive::Profile& profile) {
+    const auto [known, added] = names_.try_emplace(&profile);
+    if (added) known->second = show::chinese_names(profile);
+    return known->second;
+  }
+
   Shell* shell_;
   Settings settings_;
+  std::unordered_map<const drive::Profile*, report::Names> names_;
   std::unordered_set<std::string> right_;  ///< Lines that were checked with these settings.
   LineErrors errors_;
 };

@@ -60,7 +60,8 @@ bool sends_something(const std::vector<std::string>& words) {
 class Frames {
  public:
   Frames(Shell& shell, const std::string& file) : shell_(&shell), file_(&file) {
-    table_.columns = {{"line"}, {"text", "what is run"}, {"node"}, {"object"}, {"name"}, {"when"}, {"frame"}};
+    table_.columns = {{"line"}, {"text", "what is run"}, {"node"}, {"object"}, {"name"}, {"when"}, {"frame"},
+                      {"value"}};
   }
 
   void take(const Step& step) {
@@ -76,13 +77,10 @@ class Frames {
       const auto& row = std::get<List>(frames[i].data());
       table_.rows.push_back(
           {step.line, i == 0 ? Value(step.text) : Value(""), row[0], row[1], row[2], row[3], row[4], row[5]});
-      has_values_ = has_values_ || !row[5].is_null();
     }
   }
 
   Outcome take_all(Settings settings) {
-    if (has_values_) table_.columns.push_back({"value"});
-    for (auto& row : table_.rows) row.resize(table_.columns.size());
     return {.command = "run",
             .settings = std::move(settings),
             .uses_bus = true,
@@ -111,7 +109,6 @@ class Frames {
   Shell* shell_;
   const std::string* file_;
   Table table_;
-  bool has_values_ = false;  ///< Some lines are for a network without such frames.
   std::vector<Error> errors_;
   std::vector<std::string> notices_;
 };

@@ -1,9 +1,14 @@
 #include "cli/batch/batch_run.hpp"
 
+#include <poll.h>
+
 #include <fmt/format.h>
 
 #include "base/printable.hpp"
+#include "base/signal_wait.hpp"
 #include "cli/terminal/prompt_words.hpp"
+#include "session/open_bus.hpp"
+#include "session/stretch.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cli {
@@ -40,13 +45,14 @@ class BatchRun {
   int finish() {
     const auto left = count_ - done_ - failed_;
     if (!settings_.json) {
-      shell_->console().note(fmt::format("{}: {} of {} lines done", printable(*file_), done_, count_) +
-                             (failed_ > 0 ? fmt::format(", {} failed", failed_) : "") +
-                             (left > 0 ? fmt::format(", {} not run", left) : "") + "\n");
+      const auto said = fmt::format("{}: {} of {} lines done", printable(*file_), done_, count_) +
+                        (failed_ > 0 ? fmt::format(", {} failed", failed_) : "") +
+                        (left > 0 ? fmt::format(", {} not run", left) : "");
+      shell_->console().note(shell_->console().in_language(said) + "\n");
       return first_error_ ? exit_code(first_error_->code) : 0;
     }
     report::Record result;
-    if (!settings_.samples) result.push_back({"lines", std::move(records_)});
+    result.push_back({"lines", settings_.samples ? Value() : Value(std::move(records_))});
     result.push_back({"summary", report::Record{{"lines", count_}, {"done", done_}, {"failed", failed_}}});
     Outcome outcome{.command = "run", .settings = settings_, .uses_bus = true, .result = std::move(result)};
     if (first_error_) outcome.errors.push_back(std::move(*first_error_));
@@ -104,11 +110,36 @@ class BatchRun {
     return out;
   }
 
+  /// Axes of a cabinet are on buses of their own, which stay as they are and are all listened to.
+  Outcome wait_on_all(Duration length) {
+    Outcome out{.command = "wait", .settings = shell_->defaults()};
+    const auto lost = [&out](const Error& error) { out.errors.push_back(error); };
+    const auto end = steady_now() + length;
+    while (out.errors.empty() && steady_now() < end && !shell_->cancelled()) {
+      pollfd nothing{-1, POLLIN, 0};
+      (void)shell_->wait_for(nothing, end - steady_now(), lost);
+    }
+    for (auto& notice : shell_->take_notices(profile(), shell_->defaults().chinese))
+      out.notices.push_back(std::move(notice));
+    if (shell_->cancelled()) out.errors.push_back(interrupted_error());
+    return out;
+  }
+
+  bool waits_on_all() const {
+    const auto* const used = shell_->session();
+    const auto& bus = shell_->defaults().bus;
+    return bus.empty() ||
+           (used != nullptr && session::canonical_url(used->url()) != session::canonical_url(bus));
+  }
+
   Outcome wait(const Step& step) {
+    if (waits_on_all()) return wait_on_all(step.duration);
     const auto opened = shell_->open(shell_->defaults());
     if (!opened) return failed(opened.error(), shell_->defaults(), "wait");
     auto& session = **opened;
-    const auto waited = session.wait([] { return false; }, session.now() + step.duration);
+    const Shell::ShownWait shown(*shell_);
+    const session::Stretch stretch(session, session.now() + step.duration);
+    const auto waited = session.wait([] { return false; }, stretch.end());
     Outcome out{.command = "wait", .settings = shell_->defaults()};
     out.notices = shell_->take_notices(profile(), shell_->defaults().chinese);
     if (!waited) out.errors.push_back(waited.error());
@@ -138,10 +169,10 @@ class BatchRun {
                        {"command", report::text_or_null(outcome.command)},
                        {"ok", ok},
                        {"result", outcome.result},
-                       {"error", ok ? Value() : show::error_record(outcome.errors.front())},
+                       {"error", ok ? Value() : error_record(outcome)},
                        {"notices", std::move(notices)}};
     if (settings_.samples)
-      shell_->console().out(report::to_json(out) + "\n");
+      shell_->console().json(report::to_json(out) + "\n");
     else
       records_.emplace_back(std::move(out));
   }

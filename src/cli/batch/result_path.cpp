@@ -63,7 +63,7 @@ Result<std::vector<Part>> take_step(const std::vector<Part>& from, const PathSte
         return fail(
             Errc::negative,
             fmt::format("{} has no element {}", part.where == "." ? "the result" : part.where, *step.element),
-            list ? fmt::format("it has {}", list->size()) : "it is not a list");
+            list ? fmt::format("it has {} entries", list->size()) : "it is not a list");
       out.push_back({element_path(part.where, *step.element), (*list)[*step.element]});
       continue;
     }

@@ -55,6 +55,11 @@ Result<std::vector<settings::SettingLine>> setting_lines(Shell& shell, std::stri
     chosen_now = std::move(*next);
     if (is_choice(step.words)) continue;
     auto line = line_of(chosen_now, step.words);
+    const bool foreign = out.empty() && match_command(step.words).command == nullptr;
+    if (!line && foreign && !line.error().hint.starts_with("did you mean"))
+      return fail(Errc::file,
+                  fmt::format("{} is neither a backup, a DCF, a table nor a list of command lines", file),
+                  "`backup FILE` writes a file that can be read here");
     if (!line) return in_line(file, step.line, line.error());
     line->line = step.line;
     out.push_back(std::move(*line));

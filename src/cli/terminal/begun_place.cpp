@@ -48,24 +48,6 @@ std::string common_family(const Items& items) {
   return out;
 }
 
-std::string family_in_cabinet(const Settings& settings, Shell& shell) {
-  const auto cabinet = shell.cabinet(settings);
-  if (!cabinet || *cabinet == nullptr) return {};
-  std::vector<std::string> families;
-  if (names_axes(settings.nodes)) {
-    const auto axes = (*cabinet)->select(settings.nodes);
-    if (!axes) return {};
-    for (const auto* axis : *axes) families.push_back(axis->family);
-    return common_family(families);
-  }
-  const auto nodes = parse_nodes(settings.nodes);
-  const auto* bus = (*cabinet)->bus(settings.bus);
-  if (!nodes || bus == nullptr) return {};
-  for (const auto node : *nodes)
-    if (const auto* axis = (*cabinet)->at(bus->name, node)) families.push_back(axis->family);
-  return families.size() == nodes->size() ? common_family(families) : std::string();
-}
-
 /// Of the nodes of the line those that are there; without nodes all.
 std::string family_in_cell(const Settings& settings) {
   const auto begin = cell_begin(settings.bus);
@@ -95,6 +77,24 @@ std::string family_said_before(const Settings& settings, const Shell& shell) {
 
 }  // namespace
 
+std::string family_in_cabinet(const Settings& settings, Shell& shell) {
+  const auto cabinet = shell.cabinet(settings);
+  if (!cabinet || *cabinet == nullptr) return {};
+  std::vector<std::string> families;
+  if (names_axes(settings.nodes)) {
+    const auto axes = (*cabinet)->select(settings.nodes);
+    if (!axes) return {};
+    for (const auto* axis : *axes) families.push_back(axis->family);
+    return common_family(families);
+  }
+  const auto nodes = parse_nodes(settings.nodes);
+  const auto* bus = (*cabinet)->bus(settings.bus);
+  if (!nodes || bus == nullptr) return {};
+  for (const auto node : *nodes)
+    if (const auto* axis = (*cabinet)->at(bus->name, node)) families.push_back(axis->family);
+  return families.size() == nodes->size() ? common_family(families) : std::string();
+}
+
 std::optional<std::size_t> cell_begin(std::string_view url) {
   for (const std::string_view scheme : {"sim:", "coe:sim:", "modbus:sim:"})
     if (url.starts_with(scheme)) return scheme.size();
@@ -106,9 +106,10 @@ BegunPlace begun_place(const std::vector<std::string>& words, Shell& shell) {
   BegunPlace out{.settings = settings_of(words, defaults), .family = {}};
   const auto& line = out.settings;
   const bool as_before = line.bus == defaults.bus && line.nodes == defaults.nodes;
-  out.family = line.drive;
-  if (out.family.empty() && as_before) out.family = shell.family_in_use();
+  out.family = value_of(words, "--drive", "-d").value_or("");
   if (out.family.empty() && !line.nodes.empty()) out.family = family_in_cabinet(line, shell);
+  if (out.family.empty()) out.family = line.drive;
+  if (out.family.empty() && as_before) out.family = shell.family_in_use();
   if (out.family.empty()) out.family = family_in_cell(line);
   if (out.family.empty()) out.family = family_said_before(line, shell);
   return out;

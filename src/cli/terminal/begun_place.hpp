@@ -27,4 +27,8 @@ BegunPlace begun_place(const std::vector<std::string>& words, Shell& shell);
 /// other.
 std::optional<std::size_t> cell_begin(std::string_view url);
 
+/// The one family that the cabinet file says of the nodes of the settings; empty where they are no axes of
+/// one family, or there is no such file.
+std::string family_in_cabinet(const Settings& settings, Shell& shell);
+
 }  // namespace servoctl::cli

@@ -18,13 +18,20 @@ std::size_t widest(std::span<const Candidate> candidates) {
   return out;
 }
 
+/// A number of an object or a parameter: without its name nobody knows it.
+bool says_little(std::string_view word) { return word.find_first_of("0123456789") != std::string_view::npos; }
+
+std::string more_row(std::size_t count, std::size_t columns) {
+  return clip(fmt::format("... {} more: type another letter", count), columns - 1);
+}
+
 std::vector<std::string> rows_with_hints(std::span<const Candidate> candidates, std::size_t columns) {
   const auto width = std::min(widest(candidates), columns / 2);
   std::vector<std::string> out;
   for (const auto& one : candidates)
-    out.push_back(clip(one.hint.empty()
-                           ? printable(one.word)
-                           : pad_right(printable(one.word), width + kColumnGap) + printable(one.hint),
+    out.push_back(clip(one.hint.empty() ? printable(one.word)
+                                        : pad_right(clip(printable(one.word), width), width + kColumnGap) +
+                                              printable(one.hint),
                        columns - 1));
   return out;
 }
@@ -70,6 +77,11 @@ std::vector<std::string> candidate_rows(std::span<const Candidate> candidates, s
   const bool hints =
       std::any_of(candidates.begin(), candidates.end(), [](const auto& one) { return !one.hint.empty(); });
   if (hints && candidates.size() <= rows) return rows_with_hints(candidates, columns);
+  if (hints && rows > 1 && says_little(candidates.front().word)) {
+    auto out = rows_with_hints(candidates.first(rows - 1), columns);
+    out.push_back(more_row(candidates.size() - (rows - 1), columns));
+    return out;
+  }
   const auto width = std::min(widest(candidates) + kColumnGap, columns - 1);
   const auto across = std::max<std::size_t>(1, (columns - 1) / width);
   const bool all = candidates.size() <= across * rows;
@@ -78,9 +90,7 @@ std::vector<std::string> candidate_rows(std::span<const Candidate> candidates, s
   std::vector<std::string> out(down);
   for (std::size_t i = 0; i < shown; ++i)
     out[i % down] += pad_right(clip(printable(candidates[i].word), width), width);
-  if (!all)
-    out.push_back(
-        clip(fmt::format("... {} more: type another letter", candidates.size() - shown), columns - 1));
+  if (!all) out.push_back(more_row(candidates.size() - shown, columns));
   return out;
 }
 

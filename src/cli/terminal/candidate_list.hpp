@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,9 +11,13 @@ namespace servoctl::cli {
 
 /// A word that may stand at the cursor.
 struct Candidate {
+  /// What kind of word it is, for lists that stand under headings.
+  enum class Group : std::uint8_t { values, commands, options, parameters, objects, places };
+
   std::string word;
   std::string hint = {};  ///< What it is, shown beside it; may be empty.
-  bool operator==(const Candidate&) const = default;
+  Group group = Group::values;
+  bool operator==(const Candidate& other) const { return word == other.word && hint == other.hint; }
 };
 
 /// Takes away what begins as `typed` but for the case of its letters, where another is called the same and

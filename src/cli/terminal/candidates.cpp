@@ -10,11 +10,15 @@
 #include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 #include "drive/topics.hpp"
+#include "report/catalogue.hpp"
 
 namespace servoctl::cli {
 namespace {
 
 using command::Kind;
+
+/// What is told of more than these nobody lists.
+constexpr std::size_t kMostTold = 500;
 
 /// So many entries of a folder are looked at.
 constexpr std::size_t kMostFiles = 5000;
@@ -60,8 +64,27 @@ Candidates Candidates::behind(std::size_t bytes) const {
 
 void Candidates::take_behind(std::size_t bytes, Candidates value) {
   const auto before = begun_.substr(0, bytes);
-  for (const auto& one : value.take()) add(before + one.word, one.hint);
+  for (const auto& one : value.take()) {
+    const auto group = begin_group(one.group);
+    add(before + one.word, one.hint);
+    begin_group(group);
+  }
   note_ = value.note();
+}
+
+std::vector<Candidate> Candidates::take() {
+  if (chinese_ && out_.size() <= kMostTold)
+    for (auto& one : out_) one.hint = told(one.hint);
+  return std::move(out_);
+}
+
+/// Names of data are in Chinese already.
+std::string Candidates::told(const std::string& english) const {
+  constexpr unsigned char kFirstOfChinese = 0xE3;
+  const bool is_chinese = std::any_of(english.begin(), english.end(), [](char c) {
+    return static_cast<unsigned char>(c) >= kFirstOfChinese;
+  });
+  return chinese_ && !is_chinese ? report::in_chinese(english) : english;
 }
 
 bool Candidates::fits(std::string_view word) const { return starts_with_nocase(word, begun_); }
@@ -69,7 +92,7 @@ bool Candidates::fits(std::string_view word) const { return starts_with_nocase(w
 void Candidates::add(std::string_view word, std::string_view hint) {
   if (word.empty() || !fits(word) || !is_shown_as_it_is(word)) return;
   if (!known_.emplace(word).second) return;
-  out_.push_back({std::string(word), std::string(hint)});
+  out_.push_back({std::string(word), std::string(hint), group_});
 }
 
 const drive::Profile* Candidates::profile() {
@@ -81,6 +104,7 @@ const drive::Profile* Candidates::profile() {
 /// First words of the commands, or the second ones when the first is there.
 void Candidates::add_commands(const std::vector<std::string>& words, std::size_t first) {
   const auto typed = words.size() - first;
+  const auto group = begin_group(Candidate::Group::commands);
   for (const auto* command : command::registry()) {
     const auto parts = split(command->path, ' ');
     if (typed >= parts.size()) continue;
@@ -90,6 +114,7 @@ void Candidates::add_commands(const std::vector<std::string>& words, std::size_t
       add(parts[typed],
           parts.size() == typed + 1 ? std::string(command->summary) : second_words(parts.front()));
   }
+  begin_group(group);
 }
 
 void Candidates::add_values(const command::Command* command, const command::Parameter& parameter,

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "cli/shell.hpp"
@@ -22,6 +23,8 @@ class Candidates {
  public:
   Candidates(std::string begun, Shell& shell, BegunPlace place);
 
+  /// Of what is added from now on; the answer is the one before.
+  Candidate::Group begin_group(Candidate::Group group) { return std::exchange(group_, group); }
   /// Taken where it begins as the word does, ASCII case ignored.
   void add(std::string_view word, std::string_view hint = {});
   void add_commands(const std::vector<std::string>& words, std::size_t first);
@@ -44,13 +47,15 @@ class Candidates {
   void take_behind(std::size_t bytes, Candidates value);
 
   /// What may stand there, in words; empty where the candidates say it.
-  const std::string& note() const { return note_; }
+  std::string note() const { return told(note_); }
   /// In a shell: any file may stand there, and the shell knows them.
   bool any_file() const { return any_file_; }
-  std::vector<Candidate> take() { return std::move(out_); }
+  /// What they are told of is in the language of who reads.
+  std::vector<Candidate> take();
 
  private:
   const drive::Profile* profile();
+  std::string told(const std::string& english) const;
   bool fits(std::string_view word) const;
   void add_kind(const command::Command* command, const command::Parameter& parameter,
                 const std::vector<std::string>& before);
@@ -75,6 +80,7 @@ class Candidates {
   bool chinese_;
   std::unordered_set<std::string> known_;
   std::vector<Candidate> out_;
+  Candidate::Group group_ = Candidate::Group::values;
   std::string note_;
   bool any_file_ = false;
 };

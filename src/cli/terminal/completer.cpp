@@ -123,7 +123,11 @@ void add_all(Candidates& out, const std::vector<std::string>& words, const std::
     value.add_values(match.command, *find_option(match.command, last.substr(0, end)), {});
     return out.take_behind(name, std::move(value));
   }
-  if (!last.empty() && last.front() == '-' && !values_only) add_options(out, match.command, last);
+  if (!last.empty() && last.front() == '-' && !values_only) {
+    const auto group = out.begin_group(Candidate::Group::options);
+    add_options(out, match.command, last);
+    out.begin_group(group);
+  }
   if (match.command == nullptr) return out.add_commands(words, match.first);
   const auto after = match.first + match.used;
   add_positional(out, *match.command, words, after, nodes_typed);
@@ -154,7 +158,9 @@ Candidates complete_in_shell(const std::vector<std::string>& words, const std::s
   auto place = begun_place(named, shell);
   place.in_shell = true;
   Candidates out(begun, shell, place);
+  const auto group = out.begin_group(Candidate::Group::options);
   if (named.empty()) out.add("--version", "show the version");
+  out.begin_group(group);
   add_all(out, named, begun, place.settings.nodes_typed);
   return out;
 }

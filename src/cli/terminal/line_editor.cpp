@@ -7,6 +7,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
+#include "cli/terminal/ascii_form.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -27,6 +28,13 @@ void drop_last(std::string& text) {
   }
 }
 
+/// What is typed too: who has no such characters would see others in their place.
+void put_into_ascii(LineScreen::Picture& picture, std::size_t columns) {
+  picture.prompt.text = ascii_form(picture.prompt.text);
+  for (auto& character : picture.characters) character = ascii_form(character);
+  for (auto& row : picture.below) row = ascii_clip(ascii_form(row), columns - 1);
+}
+
 }  // namespace
 
 void LineEditor::begin() {
@@ -34,7 +42,8 @@ void LineEditor::begin() {
   place_ = history_->size();
   draft_.clear();
   search_.reset();
-  below_.clear();
+  listed_.clear();
+  note_.clear();
   if (pasted_.empty()) return;
   line_.set(pasted_.front());
   pasted_.pop_front();
@@ -66,7 +75,8 @@ LineEditor::Step LineEditor::take(char byte) {
 }
 
 LineEditor::Step LineEditor::press(const KeyPress& key) {
-  below_.clear();
+  listed_.clear();
+  note_.clear();
   if (search_ && goes_on_searching(key)) return Step::goes_on;
   if (key.kind == PressKind::enter) return Step::line;
   if (key.kind == PressKind::end_of_input && line_.empty()) return Step::end;
@@ -120,6 +130,15 @@ bool LineEditor::move_in_history(PressKind kind) {
   return true;
 }
 
+void LineEditor::take_behind(char byte) {
+  const auto key = keys_.take(byte);
+  if (!key) return;
+  if (key->pasted || key->kind == PressKind::text) behind_ += key->text;
+  if (key->kind == PressKind::enter) behind_ += '\n';
+}
+
+void LineEditor::hold_behind() { wait(std::exchange(behind_, {})); }
+
 /// What is changed in a line of the history is not kept.
 void LineEditor::go_to(std::size_t place) {
   if (place_ == history_->size()) draft_ = line_.text();
@@ -128,15 +147,28 @@ void LineEditor::go_to(std::size_t place) {
 }
 
 void LineEditor::paste(std::string_view text) {
-  const auto take_line = [&text] {
-    const auto end = std::min(text.find_first_of("\r\n"), text.size());
-    const auto out = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    return out;
-  };
-  line_.insert(take_line());
-  while (!text.empty())
-    if (const auto next = trim(take_line()); !next.empty()) pasted_.emplace_back(next);
+  const auto end = std::min(text.find_first_of("\r\n"), text.size());
+  line_.insert(text.substr(0, end));
+  wait(text.substr(end));
+}
+
+void LineEditor::wait(std::string_view lines) {
+  while (!lines.empty()) {
+    const auto end = std::min(lines.find_first_of("\r\n"), lines.size());
+    if (const auto next = trim(lines.substr(0, end)); !next.empty()) pasted_.emplace_back(next);
+    lines.remove_prefix(std::min(end + 1, lines.size()));
+  }
+}
+
+std::string LineEditor::say(std::string_view text) const {
+  return host_.in_language ? host_.in_language(text) : std::string(text);
+}
+
+std::string LineEditor::waiting_note() const {
+  if (pasted_.empty()) return {};
+  return say(pasted_.size() == 1 ? "(1 more line waits: Enter runs this one, Ctrl-C drops all)"
+                                 : fmt::format("({} more lines wait: Enter runs this one, Ctrl-C drops all)",
+                                               pasted_.size()));
 }
 
 /// False when the key ends the search and still has to be obeyed.
@@ -178,7 +210,7 @@ void LineEditor::complete() {
   const auto before = line_.before_cursor();
   auto offer = host_.offer(before);
   if (offer.candidates.empty()) {
-    if (!offer.note.empty()) below_ = {clip(printable(offer.note), usable_size(host_.size()).columns - 1)};
+    if (!offer.note.empty()) note_ = printable(offer.note);
     return;
   }
   const auto typed = std::string_view(before).substr(before.size() - std::min(offer.typed, before.size()));
@@ -191,7 +223,7 @@ void LineEditor::complete() {
   }
   if (const auto further = begun_further(offer.candidates, typed); !further.empty())
     line_.replace_before(typed.size(), further);
-  below_ = candidate_rows(offer.candidates, usable_size(host_.size()).columns, rows_for_list());
+  listed_ = std::move(offer.candidates);
 }
 
 std::size_t LineEditor::rows_for_list() const {
@@ -202,14 +234,18 @@ std::size_t LineEditor::rows_for_list() const {
 }
 
 LineScreen::Picture LineEditor::picture() const {
+  const auto columns = usable_size(host_.size()).columns;
   LineScreen::Picture out{
-      .prompt = prompt_, .characters = line_.characters(), .cursor = line_.cursor(), .below = below_};
+      .prompt = prompt_, .characters = line_.characters(), .cursor = line_.cursor(), .below = {}};
+  if (!listed_.empty()) out.below = candidate_rows(listed_, columns, rows_for_list());
+  if (!out.below.empty() && out.below.back().starts_with("... ")) out.below.back() = say(out.below.back());
+  if (!note_.empty()) out.below.push_back(clip(note_, columns - 1));
   if (search_)
-    out.prompt.text = fmt::format("({} '{}') ", search_->found ? "search" : "not found:", search_->text);
-  if (!pasted_.empty())
-    out.below.push_back(clip(fmt::format("({} more pasted line{}: Enter runs this one, Ctrl-C drops all)",
-                                         pasted_.size(), pasted_.size() == 1 ? " waits" : "s wait"),
-                             usable_size(host_.size()).columns - 1));
+    out.prompt.text = say(search_->found ? fmt::format("(search '{}')", search_->text)
+                                         : fmt::format("(not found: '{}')", search_->text)) +
+                      " ";
+  if (!pasted_.empty()) out.below.push_back(clip(waiting_note(), columns - 1));
+  if (host_.is_ascii && host_.is_ascii()) put_into_ascii(out, columns);
   return out;
 }
 

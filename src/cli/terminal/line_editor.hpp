@@ -26,13 +26,16 @@ struct Offer {
 
 /// A line while somebody types it: bytes of a terminal go in, text for it comes out, and nothing is waited
 /// for. Keys are those of Emacs, as in shells; Ctrl-R searches the history, Tab completes. Of a paste of
-/// several lines none is run by itself: each waits for Enter.
+/// several lines none is run by itself: each waits for Enter. Marks of the terminal tell a paste, or who
+/// reads the keys does.
 class LineEditor {
  public:
   enum class Step : std::uint8_t { goes_on, line, end };
   struct Host {
     std::function<Screen::Size()> size;
     std::function<Offer(std::string_view before)> offer;
+    std::function<std::string(std::string_view text)> in_language = {};  ///< Of who types; may be empty.
+    std::function<bool()> is_ascii = {};  ///< Whether what is shown has to be ASCII; may be empty.
   };
 
   /// The history outlives it; it is not added to.
@@ -45,6 +48,11 @@ class LineEditor {
 
   /// Takes in one byte. `line`: Enter was pressed, text() is it. `end`: Ctrl-D on an empty line.
   Step take(char byte);
+  /// Takes in one byte behind an Enter that take() told, and that is not obeyed: what comes faster than
+  /// anyone types is a paste, though nothing marks it.
+  void take_behind(char byte);
+  /// All of that has come: its lines wait for Enter, and so does the one before it.
+  void hold_behind();
   /// Whether a paste or a key has begun and not ended: the next byte is of it.
   bool is_inside_key() const { return keys_.is_inside(); }
   /// Waits no longer for the end of a paste or of a key.
@@ -55,6 +63,10 @@ class LineEditor {
   /// Drops the line, and what else was pasted.
   void drop();
 
+  /// Nothing of it is on the screen any more.
+  void forget_screen() { screen_.forget(); }
+  /// What stands below a line while others wait; empty when none do.
+  std::string waiting_note() const;
   /// What to write so that the terminal shows all as it is now.
   std::string draw();
   /// What to write before other text: the line is gone until draw().
@@ -75,6 +87,8 @@ class LineEditor {
   bool move_in_history(KeyPress::Kind kind);
   void go_to(std::size_t place);
   void paste(std::string_view text);
+  void wait(std::string_view lines);
+  std::string say(std::string_view text) const;
   void search(const KeyPress& key, bool older);
   void look(bool older, bool anew);
   bool goes_on_searching(const KeyPress& key);
@@ -92,7 +106,9 @@ class LineEditor {
   std::string draft_;      ///< That one, while another is shown.
   std::optional<Search> search_;
   std::deque<std::string> pasted_;  ///< Lines that wait.
-  std::vector<std::string> below_;  ///< Candidates, until the next key.
+  std::string behind_;              ///< Those that still come.
+  std::vector<Candidate> listed_;   ///< Until the next key.
+  std::string note_;                ///< In their place.
   bool clears_ = false;             ///< The screen, before the next picture.
 };
 

@@ -2,6 +2,7 @@
 
 #include "base/file.hpp"
 #include "base/folded.hpp"
+#include "base/regular_files.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
 
@@ -28,6 +29,7 @@ std::string without_escapes(std::string_view line) {
 }
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
+  const RegularFilesOnly regular;
   std::vector<std::string> out;
   const auto text = read_file(file, std::uintmax_t{16} << 20U);
   if (!text) return out;
@@ -54,6 +56,7 @@ void LineHistory::load(const std::filesystem::path& file) {
 
 Result<void> LineHistory::save(const std::filesystem::path& file) const {
   if (own_.empty()) return {};
+  const RegularFilesOnly regular;
   auto lines = lines_of(file);
   lines.insert(lines.end(), own_.begin(), own_.end());
   keep_newest(lines);

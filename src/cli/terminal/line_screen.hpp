@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,22 +39,24 @@ class LineScreen {
   /// What to write so that the line stays and the cursor stands below it.
   std::string leave(const Picture& picture, Screen::Size size);
   /// The next picture begins at a screen that is empty.
-  void forget() { rows_.clear(); }
+  void forget() { shown_.rows.clear(); }
 
  private:
   struct Row {
     std::string text;
     std::size_t width = 0;
+    std::vector<std::uint8_t> characters;  ///< The columns that each takes.
+    void put(std::string_view character);
   };
   struct Layout {
     std::vector<Row> rows;
     std::size_t cursor_row = 0;
     std::size_t cursor_column = 0;
+    std::size_t cursor_character = 0;  ///< Of its row.
   };
   static Layout layout(const Picture& picture, std::size_t columns);
 
-  std::vector<Row> rows_;  ///< On the screen; empty: nothing is.
-  std::size_t cursor_row_ = 0;
+  Layout shown_;  ///< On the screen; no rows: nothing is.
 };
 
 }  // namespace servoctl::cli

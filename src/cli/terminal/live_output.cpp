@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <span>
 
@@ -49,7 +50,17 @@ int LiveOutput::wait_for_room(Duration patience) const {
   return wait_or_signal(std::span(&room, 1), patience);
 }
 
-void LiveOutput::offer(std::string_view text, Duration patience) {
+int LiveOutput::wait_for_room(Duration patience, const std::function<Duration()>& pulse) const {
+  for (auto left = patience;;) {
+    const auto slice = pulse ? std::min(left, pulse()) : left;
+    if (slice <= Duration::zero()) return 0;
+    const int ready = wait_for_room(slice);
+    left -= slice;
+    if (ready != 0 || left <= Duration::zero()) return ready;
+  }
+}
+
+void LiveOutput::offer(std::string_view text, Duration patience, const std::function<Duration()>& pulse) {
   if (error_ != 0) return;
   if (waiting_.size() < kMost)
     waiting_ += text;
@@ -57,7 +68,7 @@ void LiveOutput::offer(std::string_view text, Duration patience) {
     ++left_out_;
   pass_on();
   while (!waiting_.empty() && error_ == 0 && !stalled_ && patience > Duration::zero()) {
-    const int ready = wait_for_room(patience);
+    const int ready = wait_for_room(patience, pulse);
     if (ready < 0) return;
     stalled_ = ready == 0;
     pass_on();
@@ -80,6 +91,10 @@ void LiveOutput::write(std::string_view text) {
     if (error_ == 0) error_ = error;
     return;
   }
+}
+
+void LiveOutput::forget_signal() {
+  if (error_ == EINTR) error_ = 0;
 }
 
 void LiveOutput::give_up() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,14 +27,20 @@ class LiveOutput {
   void close();
 
   /// Waits for a reader who takes nothing at most `patience`, and not at all once that was in vain, until he
-  /// takes something; a signal ends the wait.
-  void offer(std::string_view text, Duration patience = Duration::zero());
+  /// takes something; a signal ends the wait. `pulse` is called in it, at once and as often as it says: it
+  /// answers how long it can be left alone, zero where the wait is over. May be empty.
+  void offer(std::string_view text, Duration patience = Duration::zero(),
+             const std::function<Duration()>& pulse = {});
   /// Passes on what waits and the text, and waits for the reader as long as he likes; only a signal that
   /// comes meanwhile ends it, and is the error().
   void write(std::string_view text);
 
   /// What was offered and has not gone yet; the caller sees to it.
   std::string take_waiting() { return std::exchange(waiting_, {}); }
+  /// Whether something that was offered waits for its reader.
+  bool is_waiting() const { return !waiting_.empty() && error_ == 0; }
+  /// That a signal ended a write() is no error for what is written from now on.
+  void forget_signal();
   /// What still waits is lost, which is an error.
   void give_up();
   /// How many texts were left out since the last call.
@@ -45,6 +52,7 @@ class LiveOutput {
   std::ptrdiff_t pass(std::string_view text) const;
   void pass_on();
   int wait_for_room(Duration patience) const;
+  int wait_for_room(Duration patience, const std::function<Duration()>& pulse) const;
 
   int descriptor_;
   int own_ = -1;  ///< The same pipe or terminal without waiting; -1 where it cannot be opened again.

@@ -9,6 +9,7 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "cli/terminal/ascii_form.hpp"
 #include "report/catalogue.hpp"
 
 namespace servoctl::cli {
@@ -84,10 +85,18 @@ void LiveTable::update() {
   shown_ = rows_;
 }
 
+std::string LiveTable::in_charset(std::string_view text) const {
+  return ascii_ ? ascii_form(text) : std::string(text);
+}
+
+std::string LiveTable::cut(std::string_view text, std::size_t width) const {
+  return ascii_ ? ascii_clip(text, width) : clip(text, width);
+}
+
 /// In the language of who reads.
 std::string LiveTable::shown(std::string_view text) {
   constexpr std::size_t kMostKnown = 4096;
-  if (!chinese_) return std::string(text);
+  if (!chinese_) return in_charset(text);
   if (const auto found = known_.find(text); found != known_.end()) return found->second;
   if (known_.size() >= kMostKnown) known_.clear();
   return known_.emplace(std::string(text), report::in_chinese(text)).first->second;
@@ -95,7 +104,8 @@ std::string LiveTable::shown(std::string_view text) {
 
 std::string LiveTable::cell(const Row& row, std::size_t column) {
   const auto& title = layout_.columns[column].title;
-  return printable(title == "node" || title == "name" ? row.cells[column] : shown(row.cells[column]));
+  const auto& text = row.cells[column];
+  return printable(title == "node" || title == "name" ? in_charset(text) : shown(text));
 }
 
 void LiveTable::measure() {
@@ -136,7 +146,7 @@ std::string LiveTable::line(const std::vector<std::string>& cells,
                             const std::vector<std::size_t>& widths) const {
   std::string out;
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto cell = clip(cells[i], widths[i]);
+    const auto cell = cut(cells[i], widths[i]);
     if (i > 0) out.append(kGap, ' ');
     out += i < layout_.columns.size() && layout_.columns[i].right ? pad_left(cell, widths[i])
                                                                   : pad_right(cell, widths[i]);
@@ -169,12 +179,12 @@ std::vector<std::string> LiveTable::lines(std::size_t width, std::size_t height)
     std::vector<std::string> cells;
     for (std::size_t column = 0; column < rows[i]->cells.size(); ++column)
       cells.push_back(cell(*rows[i], column));
-    cells.push_back(sparkline(rows[i]->plotted, widths.back()));
+    cells.push_back(in_charset(sparkline(rows[i]->plotted, widths.back())));
     out.push_back(line(cells, widths));
   }
   if (!remark_.empty()) out.push_back(printable(shown(remark_)));
   out.push_back(shown(footer(first_, count)));
-  for (auto& each : out) each = clip(each, width);
+  for (auto& each : out) each = cut(each, width);
   if (out.size() > height) out.resize(height);
   return out;
 }

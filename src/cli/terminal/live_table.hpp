@@ -29,6 +29,8 @@ class LiveTable {
 
   /// Headings, remarks and cells in Chinese, but for those under `node` and `name`.
   void set_chinese(bool chinese) { chinese_ = chinese; }
+  /// All of it in ASCII, as ascii_form() says it.
+  void set_ascii(bool ascii) { ascii_ = ascii; }
 
   /// Paused, or no longer.
   void pause() { paused_ = !paused_; }
@@ -55,6 +57,8 @@ class LiveTable {
   std::vector<std::size_t> fitted(std::size_t width) const;
   std::string line(const std::vector<std::string>& cells, const std::vector<std::size_t>& widths) const;
   std::string shown(std::string_view text);
+  std::string in_charset(std::string_view text) const;
+  std::string cut(std::string_view text, std::size_t width) const;
   std::string cell(const Row& row, std::size_t column);
   std::string footer(std::size_t first, std::size_t shown) const;
 
@@ -68,6 +72,7 @@ class LiveTable {
   std::size_t first_ = 0;  ///< Row at the top.
   bool paused_ = false;
   bool chinese_ = false;
+  bool ascii_ = false;
   std::map<std::string, std::string, std::less<>> known_;  ///< In Chinese: the same is drawn again and again.
 };
 

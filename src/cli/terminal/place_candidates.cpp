@@ -78,6 +78,9 @@ void Candidates::add_cells(std::size_t begin) {
     const auto piece = comma == std::string::npos || comma < begin ? begin : comma + 1;
     if (begun_.find('@', piece) != std::string::npos) {
       note_ = "node-ID, then `,FAMILY@NODE` or `?state=FILE`";
+      // A shell puts its own quotes around the sign; who types it has to know of them.
+      if (begun_.back() >= '0' && begun_.back() <= '9')
+        for (const auto& option : kCellOptions) add(fmt::format("{}?{}", begun_, option.begin), option.hint);
       return;
     }
     const auto before = begun_.substr(0, piece);
@@ -134,9 +137,11 @@ std::string Candidates::list_before() const {
 }
 
 void Candidates::add_nodes() {
+  const auto group = begin_group(Candidate::Group::places);
   if (begun_.find(',') == std::string::npos) add("all", "every node that answers");
   add_axes();
   add_node_numbers();
+  begin_group(group);
 }
 
 void Candidates::add_node_numbers() {
@@ -148,9 +153,11 @@ void Candidates::add_axes() {
   const auto cabinet = shell_->cabinet(place_.settings);
   if (!cabinet || *cabinet == nullptr) return;
   const auto before = list_before();
+  const auto group = begin_group(Candidate::Group::places);
   for (const auto& axis : (*cabinet)->axes)
     add(before + axis.name, fmt::format("axis: {} node {}, {}", axis.bus, axis.node, axis.family));
   for (const auto& name : (*cabinet)->names()) add(before + name, "group of axes");
+  begin_group(group);
 }
 
 }  // namespace servoctl::cli

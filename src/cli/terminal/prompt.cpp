@@ -1,26 +1,30 @@
 #include "cli/terminal/prompt.hpp"
 
 #include <poll.h>
-#include <termios.h>
 #include <unistd.h>
 
+#include <fmt/format.h>
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/printable.hpp"
+#include "base/timespec.hpp"
 #include "cli/batch/batch_command.hpp"
 #include "cli/last_place.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/state_folder.hpp"
+#include "cli/terminal/ascii_form.hpp"
 #include "cli/terminal/completer.hpp"
 #include "cli/terminal/line_editor.hpp"
-#include "cli/terminal/line_mode.hpp"
+#include "cli/terminal/prompt_terminal.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "cli/terminal/signals.hpp"
+#include "cli/terminal/typed_keys.hpp"
 #include "cli/words.hpp"
 
 namespace servoctl::cli {
@@ -28,20 +32,12 @@ namespace {
 
 /// How often what stands in the prompt is looked at, and whose the terminal is.
 constexpr Duration kLook = std::chrono::seconds(1);
-/// Of xterm, DECSET 2004: what is pasted stands between marks.
-constexpr std::string_view kMarkPastes = "\x1B[?2004h";
-constexpr std::string_view kMarkNoPastes = "\x1B[?2004l";
-
-/// Whether the terminal understands more than text.
-bool moves_cursor() {
-  const char* term = std::getenv("TERM");
-  return term != nullptr && *term != '\0' && std::string_view(term) != "dumb";
-}
-
-bool shows_colours() {
-  const char* none = std::getenv("NO_COLOR");
-  return none == nullptr || *none == '\0';
-}
+constexpr std::string_view kDropped =
+    "what was typed meanwhile was dropped: nothing starts by itself behind a line that may move a motor";
+/// Notices that are kept for a terminal that takes nothing.
+constexpr std::size_t kMostUntold = 100;
+/// Bytes of a paste that nothing marks; what is beyond is dropped.
+constexpr std::size_t kMostPasted = 1U << 16U;
 
 /// Whether the line may have moved a motor.
 bool may_move(const std::string& line) {
@@ -60,14 +56,17 @@ class Prompt {
         editor_(history_,
                 LineEditor::Host{
                     .size = [this] { return screen_size(); },
-                    .offer = [this](std::string_view before) { return complete(before, *shell_); }}) {
+                    .offer = [this](std::string_view before) { return complete(before, *shell_); },
+                    .in_language = [this](std::string_view text) { return console_->in_language(text); },
+                    .is_ascii = [this] { return console_->is_ascii(); }}),
+        terminal_(console) {
     shell.stay_open(true);
     if (!folder_.empty()) history_.load(folder_ / "history");
   }
   Prompt(const Prompt&) = delete;
   Prompt& operator=(const Prompt&) = delete;
   ~Prompt() {
-    rest();
+    terminal_.leave();
     // What was typed is worth no word when it cannot be kept.
     if (!folder_.empty()) (void)history_.save(folder_ / "history");
   }
@@ -77,73 +76,63 @@ class Prompt {
  private:
   Screen::Size screen_size() const { return {console_->width(), console_->height()}; }
   PromptText prompt() const;
-  void begin_line();
-  void rest();
+  void begin_line(bool moved = false);
   bool wait_for_key();
   void take_keys();
-  bool key_waits() const;
+  bool more_comes();
+  void hold_lines();
   void look();
   void show_notices();
   void drop_line();
   void run_line();
   void keep_place();
   void draw();
-  void say(std::string_view text);
+  bool wait_for(pollfd& wanted, Duration longest);
 
   Shell* shell_;
   Console* console_;
   LineRunner runner_;
   LineHistory history_;
   LineEditor editor_;
-  LineMode mode_{STDIN_FILENO};
+  PromptTerminal terminal_;
+  TypedKeys keys_{STDIN_FILENO};
   std::filesystem::path folder_ = state_folder();
   std::string kept_;  ///< The place that was.
-  bool shows_output_ = ::isatty(STDOUT_FILENO) == 1;
-  bool edits_ = shows_output_ && moves_cursor();  ///< Else the terminal edits the line, as far as it does.
-  bool colours_ = shows_colours();
-  bool editing_ = false;  ///< A line is being typed.
   bool done_ = false;
   bool gives_up_paste_ = false;
-  std::chrono::steady_clock::time_point last_key_;
-  bool held_ = false;  ///< A key waits, and the terminal takes nothing: what it shows would be lost.
+  bool held_ = false;   ///< A key waits, and the terminal takes nothing: what it shows would be lost.
+  bool stale_ = false;  ///< What is on the screen is not what was typed.
+  std::vector<std::string> untold_;  ///< Notices that wait for the terminal.
+  std::size_t left_out_ = 0;         ///< Those beyond.
 };
 
 /// Red where there are colours.
 PromptText Prompt::prompt() const {
-  auto out = prompt_text(*shell_);
-  out.alarm = out.alarm && colours_;
+  auto out = prompt_text(*shell_, console_->width());
+  if (console_->is_ascii()) out.text = ascii_form(out.text);
+  out.alarm = out.alarm && has_colours(console_->colour(), STDOUT_FILENO);
   return out;
 }
 
 void Prompt::draw() {
-  if (edits_) console_->draw(editor_.draw());
+  if (!terminal_.edits()) return;
+  stale_ = terminal_.is_behind();
+  if (!stale_) terminal_.draw(editor_.draw());
 }
 
-/// What is no result stays out of a file that takes the results.
-void Prompt::say(std::string_view text) {
-  if (shows_output_)
-    console_->out(text);
-  else
-    console_->err(text);
-}
-
-void Prompt::begin_line() {
+/// `moved`: behind a line that may have moved a motor.
+void Prompt::begin_line(bool moved) {
+  const bool waits = editor_.waits_pasted();
   editor_.set_prompt(prompt());
   editor_.begin();
-  editing_ = true;
-  if (!edits_) return say(editor_.prompt().text);
-  mode_.enter();
-  keep_last_words(kMarkNoPastes);
-  console_->draw(kMarkPastes);
-  draw();
-}
-
-/// The terminal as it was, for whoever uses it next.
-void Prompt::rest() {
-  if (editing_ && edits_) console_->draw(kMarkNoPastes);
-  editing_ = false;
-  keep_last_words("");
-  mode_.leave();
+  terminal_.begin();
+  // An Enter typed while a motor turned, or before the next line that waits is shown, starts nothing. Of
+  // lines that are not whole nothing was known before.
+  if ((moved || waits) && keys_.drop() > 0 && moved)
+    terminal_.say("* " + console_->in_language(kDropped) + "\n");
+  if (terminal_.edits()) return draw();
+  const auto note = editor_.waiting_note();
+  terminal_.say((note.empty() ? "" : note + "\n") + editor_.prompt().text + editor_.text());
 }
 
 /// Once it is somewhere else than when it was kept last.
@@ -161,67 +150,93 @@ int Prompt::run() {
     if (wait_for_key()) take_keys();
     if (!done_) look();
   }
-  rest();
   shell_->let_go();
+  terminal_.leave();
   return terminated() ? exit_code(Errc::interrupted) : 0;
 }
 
-/// True when a key waits; frames and timers of the bus are served meanwhile.
-bool Prompt::wait_for_key() {
-  pollfd wanted{STDIN_FILENO, POLLIN, 0};
-  if (held_) wanted = {STDOUT_FILENO, POLLOUT, 0};
+/// True when it is there; frames and timers of the bus are served meanwhile.
+bool Prompt::wait_for(pollfd& wanted, Duration longest) {
   const auto lost = [this](const Error& error) {
-    if (edits_) console_->draw(editor_.wipe());
+    if (terminal_.edits()) terminal_.draw(editor_.wipe());
     shell_->report_error(error, false);
     draw();
   };
-  if (!shell_->wait_for(wanted, kLook, lost)) return false;
-  const bool key = wanted.revents != 0;
-  pollfd terminal{STDOUT_FILENO, POLLOUT, 0};
-  held_ = key && ::poll(&terminal, 1, 0) == 0;
-  return key && !held_;
+  return shell_->wait_for(wanted, longest, lost) && wanted.revents != 0;
 }
 
-bool Prompt::key_waits() const {
-  pollfd input{STDIN_FILENO, POLLIN, 0};
-  return ::poll(&input, 1, 0) > 0;
+/// True when a key waits, and the terminal can show what comes of it.
+bool Prompt::wait_for_key() {
+  const bool waits = held_ || terminal_.is_behind();
+  auto wanted = waits ? terminal_.room() : pollfd{STDIN_FILENO, POLLIN, 0};
+  const bool there = wait_for(wanted, kLook);
+  if (waits) {
+    held_ = held_ && !there;
+    if (!terminal_.is_behind() && stale_) draw();
+    return false;
+  }
+  auto room = terminal_.room();
+  held_ = there && ::poll(&room, 1, 0) == 0;
+  return there && !held_;
 }
 
 /// All that were typed, but for what comes behind Enter: that is for whoever asks next.
 void Prompt::take_keys() {
   constexpr int kAtOnce = 4096;
-  for (int i = 0; i < kAtOnce && !done_ && key_waits(); ++i) {
-    char byte = 0;
-    last_key_ = std::chrono::steady_clock::now();
-    if (::read(STDIN_FILENO, &byte, 1) != 1) {
+  for (int i = 0; i < kAtOnce && !done_ && keys_.wait(); ++i) {
+    const auto byte = keys_.take();
+    if (!byte) {
       done_ = !interrupted();
       break;
     }
-    const auto step = editor_.take(byte);
+    const auto step = editor_.take(*byte);
     if (step == LineEditor::Step::end) {
-      if (edits_) console_->draw(editor_.leave());
+      if (terminal_.edits()) terminal_.draw(editor_.leave());
       done_ = true;
     }
-    if (step == LineEditor::Step::line) return run_line();
+    if (step != LineEditor::Step::line) continue;
+    if (!more_comes()) return run_line();
+    hold_lines();
   }
-  if (done_) return;
-  draw();
+  if (!done_) draw();
+}
+
+/// Whether something comes behind what was read, faster than anyone types.
+bool Prompt::more_comes() {
+  if (!keys_.is_burst()) return keys_.wait();
+  const auto end = steady_now() + TypedKeys::kPasteGoesOn;
+  while (!keys_.wait() && !interrupted() && steady_now() < end) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    (void)wait_for(input, left_until(end));
+  }
+  return keys_.wait() && !interrupted();
+}
+
+/// Several lines at once are a paste, or were typed while another line ran: none of them runs by itself.
+void Prompt::hold_lines() {
+  for (std::size_t count = 0; more_comes();) {
+    const auto byte = keys_.take();
+    if (!byte) break;
+    if (++count < kMostPasted) editor_.take_behind(*byte);
+  }
+  editor_.hold_behind();
+  if (!terminal_.edits() && editor_.waits_pasted())
+    terminal_.say(editor_.waiting_note() + "\n" + editor_.prompt().text + editor_.text());
 }
 
 /// What has changed meanwhile.
 void Prompt::look() {
   // Ctrl-C may have dropped the end of a paste with the rest of it; what still comes is not taken for keys.
-  const bool silent = std::chrono::steady_clock::now() - last_key_ > kLook;
+  const bool silent = std::chrono::steady_clock::now() - keys_.last() > kLook;
   if (gives_up_paste_ && silent) {
     editor_.forget_key();
     gives_up_paste_ = false;
   }
-  if (edits_ && mode_.renew()) {
-    console_->draw(kMarkPastes);
-    draw();
-  }
+  const auto change = terminal_.take_change();
+  if (change == PromptTerminal::Change::stopped) editor_.forget_screen();
+  if (change != PromptTerminal::Change::none) draw();
   show_notices();
-  if (const auto now = prompt(); edits_ && now != editor_.prompt()) {
+  if (const auto now = prompt(); terminal_.edits() && now != editor_.prompt()) {
     editor_.set_prompt(now);
     draw();
   }
@@ -231,37 +246,44 @@ void Prompt::show_notices() {
   const auto& settings = shell_->defaults();
   const auto loaded =
       settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : shell_->profile(settings.drive);
-  const auto notices = shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese);
-  if (notices.empty()) return;
-  if (edits_) console_->draw(editor_.wipe());
-  for (const auto& notice : notices) say("* " + printable(console_->in_language(notice)) + "\n");
+  for (const auto& notice : shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese)) {
+    if (untold_.size() < kMostUntold)
+      untold_.push_back(notice);
+    else
+      ++left_out_;
+  }
+  if (untold_.empty() || terminal_.is_behind()) return;
+  if (left_out_ > 0)
+    untold_.push_back(fmt::format("{} messages were not shown: the output was not read in time",
+                                  std::exchange(left_out_, 0)));
+  if (terminal_.edits()) terminal_.draw(editor_.wipe());
+  for (const auto& notice : std::exchange(untold_, {}))
+    terminal_.say("* " + printable(console_->in_language(notice)) + "\n");
   draw();
 }
 
 void Prompt::drop_line() {
   clear_interrupt();
-  if (edits_)
-    console_->draw(editor_.leave("^C"));
+  if (terminal_.edits())
+    terminal_.draw(editor_.leave("^C"));
   else
-    say("^C\n");
+    terminal_.say("^C\n");
   editor_.drop();
   gives_up_paste_ = editor_.is_inside_key();
-  rest();
   begin_line();
 }
 
 void Prompt::run_line() {
   const auto text = editor_.text();
-  if (edits_) console_->draw(editor_.leave());
-  rest();
+  if (terminal_.edits()) terminal_.draw(editor_.leave());
+  terminal_.pause();
   if (text.find_first_not_of(' ') != std::string::npos) history_.add(text);
   runner_.run(text);
-  // An Enter typed while a motor turned, or before the next pasted line was shown, starts nothing.
-  if (editor_.waits_pasted() || may_move(text)) (void)::tcflush(STDIN_FILENO, TCIFLUSH);
   clear_interrupt();
   keep_place();
   done_ = runner_.wants_exit();
-  if (!done_ && !terminated()) begin_line();
+  if (done_ || terminated()) return;
+  begin_line(may_move(text));
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "cli/terminal/begun_place.hpp"
 #include "command/prompt_words.hpp"
 #include "command/registry.hpp"
+#include "report/catalogue.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -25,7 +27,11 @@ Result<void> check_nodes(Shell& shell, const Settings& settings, const std::stri
   if (numbers) return {};
   const auto cabinet = names_axes(nodes) ? shell.cabinet(settings) : Result<const cabinet::Cabinet*>(nullptr);
   if (!cabinet) return fail(cabinet.error());
-  if (*cabinet == nullptr) return fail(numbers.error());
+  if (*cabinet == nullptr)
+    return fail(Errc::usage, numbers.error().message,
+                names_axes(nodes) ? "`use 1`, `use 1,3,5-8` or `use all`; axes have names in a cabinet file, "
+                                    "and none is in use here"
+                                  : "`use 1`, `use 1,3,5-8` or `use all`");
   const auto axes = (*cabinet)->select(nodes);
   if (!axes) return fail(axes.error());
   return {};
@@ -36,47 +42,108 @@ struct Place {
   std::string bus;
   std::uint8_t node = 0;
   std::string name;
+  std::string family;
 };
 
-/// Bus and family of the axes, as the file says them; empty where it cannot be used.
-std::string place_of_axes(Shell& shell, const Settings& settings, std::vector<Place>& places) {
+std::string in_language(const std::string& english, bool chinese) {
+  return chinese ? report::in_chinese(english) : english;
+}
+
+/// What stands in the prompt.
+struct Parts {
+  std::string bus;
+  std::string nodes;
+  std::string family;
+  std::string states;
+
+  std::string text(bool with_program) const {
+    std::string out(with_program ? "servoctl" : "");
+    for (const auto* part : {&bus, &nodes, &family, &states})
+      if (!part->empty()) out += (out.empty() ? "" : " ") + *part;
+    return printable(out) + "> ";
+  }
+};
+
+/// Down to `least` columns; of a place in a folder, or on another machine, its last name first.
+void shorten(std::string& part, std::size_t least, std::size_t too_wide) {
+  const auto slash = part.rfind('/');
+  if (too_wide > 0 && slash != std::string::npos && slash > 1) {
+    const auto before = display_width(part);
+    part = "…" + part.substr(slash + 1);
+    too_wide -= std::min(too_wide, before - std::min(before, display_width(part)));
+  }
+  const auto width = display_width(part);
+  if (too_wide > 0 && width > least) part = clip(part, std::max(least, width - std::min(width, too_wide)));
+}
+
+/// In five eighths of the window where that can be: the bus gives way, then the family, which stays a guess
+/// where it is one, then the name of the program; the nodes and their state never do.
+std::string in_window(Parts parts, std::size_t window) {
+  constexpr std::size_t kLeastBus = 8;
+  constexpr std::size_t kLeastFamily = 4;
+  const auto most = window == 0 ? std::string::npos : window * 5 / 8;
+  const auto too_wide = [&] {
+    const auto width = display_width(parts.text(true));
+    return width > most ? width - most : 0;
+  };
+  shorten(parts.bus, kLeastBus, too_wide());
+  const bool guessed = parts.family.ends_with('?');
+  shorten(parts.family, kLeastFamily, too_wide());
+  if (guessed && !parts.family.ends_with('?')) parts.family += '?';
+  return parts.text(too_wide() == 0);
+}
+
+/// Bus and family of the axes, as the file says them; false where it cannot be used.
+bool place_of_axes(Shell& shell, const Settings& settings, Parts& parts, std::vector<Place>& places) {
   const auto cabinet = shell.cabinet(settings);
-  if (!cabinet || *cabinet == nullptr) return {};
+  if (!cabinet || *cabinet == nullptr) return false;
   const auto axes = (*cabinet)->select(settings.nodes);
-  if (!axes) return {};
+  if (!axes) return false;
   std::set<std::string> buses;
   std::set<std::string> families;
   for (const auto* axis : *axes) {
     const auto* bus = (*cabinet)->bus(axis->bus);
     buses.insert(axis->bus);
     families.insert(axis->family);
-    if (bus != nullptr) places.push_back({bus->url, axis->node, axis->name});
+    if (bus != nullptr) places.push_back({bus->url, axis->node, axis->name, axis->family});
   }
-  return fmt::format(" {} {} {}", fmt::join(buses, ","), settings.nodes, fmt::join(families, ","));
+  parts.bus = fmt::format("{}", fmt::join(buses, ","));
+  parts.nodes = settings.nodes;
+  parts.family = fmt::format("{}", fmt::join(families, ","));
+  return true;
 }
 
-std::string place_of_nodes(Shell& shell, const Settings& settings, std::vector<Place>& places) {
-  std::string out;
+void place_of_nodes(Shell& shell, const Settings& settings, Parts& parts, std::vector<Place>& places) {
   const auto nodes =
       settings.nodes.empty() ? Result<std::vector<std::uint8_t>>() : parse_nodes(settings.nodes);
-  if (!settings.bus.empty()) out += " " + settings.bus.substr(0, settings.bus.find('?'));
-  if (!settings.nodes.empty()) out += (nodes ? " node " : " ") + settings.nodes;
-  if (const auto family = shell.family_text(); !family.empty()) out += " " + family;
+  parts.bus = settings.bus.substr(0, settings.bus.find('?'));
+  if (!settings.nodes.empty())
+    parts.nodes =
+        nodes ? in_language(fmt::format("node {}", settings.nodes), settings.chinese) : settings.nodes;
+  // What the cabinet file says of the node holds for the lines.
+  const auto of_axis = family_in_cabinet(settings, shell);
+  const auto family = of_axis.empty() ? shell.family_in_use() : of_axis;
+  parts.family = of_axis.empty() ? shell.family_text() : of_axis;
   for (const auto node : nodes.value_or(std::vector<std::uint8_t>()))
-    if (node != 0) places.push_back({settings.bus, node, fmt::format("node {}", node)});
-  return out;
+    if (node != 0)
+      places.push_back(
+          {settings.bus, node, in_language(fmt::format("node {}", node), settings.chinese), family});
 }
 
-/// Of one node its state; of several those that are in fault.
-void add_states(Shell& shell, const std::vector<Place>& places, PromptText& out) {
+/// Of one node its state; of several those that are in fault. The answer: whether any is.
+bool add_states(Shell& shell, const std::vector<Place>& places, Parts& parts) {
   std::string text;
+  bool alarm = false;
   for (const auto& place : places) {
-    const auto state = shell.heard_state(place.bus, place.node);
-    out.alarm = out.alarm || state.fault;
+    const auto state = shell.heard_state(place.bus, place.node, place.family);
+    alarm = alarm || state.fault;
     if (state.text.empty() || (places.size() > 1 && !state.fault)) continue;
-    append(text, (places.size() > 1 ? place.name + " " : "") + state.text + (state.old ? "?" : ""));
+    const auto told = in_language(state.text, shell.defaults().chinese);
+    append(text, (places.size() > 1 ? place.name + " " : "") + told + (state.unsure ? "?" : ""),
+           shell.defaults().chinese ? "，" : ", ");
   }
-  if (!text.empty()) out.text += " [" + text + "]";
+  if (!text.empty()) parts.states = "[" + text + "]";
+  return alarm;
 }
 
 }  // namespace
@@ -88,17 +155,29 @@ Result<session::Session*> open_chosen_bus(Shell& shell, const Settings& settings
   return shell.open(bus == nullptr ? settings : on_bus(**cabinet, settings, *bus).settings);
 }
 
-PromptText prompt_text(Shell& shell) {
+PromptText prompt_text(Shell& shell, std::size_t window) {
   const auto& settings = shell.defaults();
   std::vector<Place> places;
-  PromptText out{.text = "servoctl", .alarm = false};
-  std::string place;
-  if (names_axes(settings.nodes)) place = place_of_axes(shell, settings, places);
-  out.text += place.empty() ? place_of_nodes(shell, settings, places) : place;
-  add_states(shell, places, out);
-  out.text = printable(out.text) + "> ";
-  return out;
+  Parts parts;
+  if (!names_axes(settings.nodes) || !place_of_axes(shell, settings, parts, places))
+    place_of_nodes(shell, settings, parts, places);
+  const bool alarm = add_states(shell, places, parts);
+  return {.text = in_window(std::move(parts), window), .alarm = alarm};
 }
+
+namespace {
+
+/// `drive` says nothing of an axis.
+void tell_other_family(Shell& shell, const std::string& said) {
+  const auto family = family_in_cabinet(shell.defaults(), shell);
+  if (family.empty() || family == said) return;
+  shell.console().note(
+      fmt::format("notice: the lines for {} go on with {}, as the cabinet file says: `drive` is for nodes "
+                  "that are no axes\n",
+                  printable(shell.defaults().nodes), family));
+}
+
+}  // namespace
 
 bool is_exit(const std::vector<std::string>& words) {
   return words.size() == 1 && (words.front() == "exit" || words.front() == "quit");
@@ -133,6 +212,7 @@ std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& word
     if (const auto opened = open_chosen_bus(shell, *settings); !opened)
       return failed(opened.error(), shell.defaults(), word->name);
   shell.defaults() = std::move(*settings);
+  if (word->name == "drive") tell_other_family(shell, words[1]);
   return Outcome{.command = std::string(word->name), .settings = shell.defaults()};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,8 +12,9 @@ namespace servoctl::cli {
 
 /// Where lines go that name no place, and how it is there: bus, node, family and state; of axes of the
 /// cabinet those of the file. `servoctl can0 node 1 gsd600 [operation enabled]> `. A `?` behind the state:
-/// it was heard some time ago. In red when a node is in fault. Nothing is asked of a drive for it.
-PromptText prompt_text(Shell& shell);
+/// it was heard some time ago. In red when a node is in fault. Nothing is asked of a drive for it. `window`:
+/// columns of the terminal, in which most are left for what is typed; 0: it is as long as it is.
+PromptText prompt_text(Shell& shell, std::size_t window = 0);
 
 /// Whether the line is `exit` or `quit`.
 bool is_exit(const std::vector<std::string>& words);

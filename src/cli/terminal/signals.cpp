@@ -1,11 +1,14 @@
 #include "cli/terminal/signals.hpp"
 
+#include <poll.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <ctime>
 #include <initializer_list>
+#include <utility>
 
 #include "base/signal_wait.hpp"
 
@@ -29,13 +32,16 @@ volatile std::sig_atomic_t g_has_mode = 0;
 int g_terminal = -1;
 termios g_mode{};
 std::string_view g_last_words;
+std::atomic<unsigned> g_resumed{0};
 
-/// tcsetattr(), tcgetpgrp() and write() may be called by a handler. From the background it would stop the
-/// process (SIGTTOU), and the terminal is another's.
+/// tcsetattr(), tcgetpgrp(), poll() and write() may be called by a handler. From the background it would stop
+/// the process (SIGTTOU), and the terminal is another's. One that is held takes nothing.
 void give_terminal_back() {
   if (g_has_mode != 0 && ::tcgetpgrp(g_terminal) != ::getpgrp()) return;
   if (g_has_mode != 0) (void)::tcsetattr(g_terminal, TCSANOW, &g_mode);
-  if (!g_last_words.empty()) (void)!::write(STDOUT_FILENO, g_last_words.data(), g_last_words.size());
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  if (g_last_words.empty() || ::poll(&output, 1, 0) <= 0) return;
+  (void)!::write(STDOUT_FILENO, g_last_words.data(), g_last_words.size());
 }
 
 bool is_of_keyboard(int signal) { return signal == SIGINT || signal == SIGQUIT; }
@@ -62,6 +68,32 @@ extern "C" void on_signal(int signal) {
 }
 
 extern "C" void on_nudge(int) {}
+
+extern "C" void on_resize(int) { note_signal(); }
+
+/// Ctrl-Z: the process stops here, and goes on here.
+extern "C" void on_stop(int signal) {
+  if (g_protected != 0) return on_signal(signal);
+  const int error = errno;
+  give_terminal_back();
+  struct sigaction plain {};
+  struct sigaction mine {};
+  plain.sa_handler = SIG_DFL;
+  sigemptyset(&plain.sa_mask);
+  ::sigaction(SIGTSTP, &plain, &mine);
+  ::raise(SIGTSTP);
+  sigset_t stop;
+  sigset_t before;
+  sigemptyset(&stop);
+  sigaddset(&stop, SIGTSTP);
+  ::pthread_sigmask(SIG_UNBLOCK, &stop, &before);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  ::sigaction(SIGTSTP, &mine, nullptr);
+  g_resumed.fetch_add(1);
+  // Whoever waits for a key shows what was there before.
+  if (g_has_mode != 0) note_signal();
+  errno = error;
+}
 
 /// While it lives no signal comes.
 class Quiet {
@@ -118,11 +150,25 @@ void install_signal_handlers() {
   for (const int signal : {SIGPIPE, SIGXFSZ}) set_handler(signal, SIG_IGN);
 }
 
+void lend_keyboard(bool lent) {
+  static struct sigaction interrupt, quit;  // As they were before.
+  const Quiet quiet;
+  if (lent) {
+    interrupt = set_handler(SIGINT, SIG_IGN);
+    quit = set_handler(SIGQUIT, SIG_IGN);
+    return;
+  }
+  sigaction(SIGINT, &interrupt, nullptr);
+  sigaction(SIGQUIT, &quit, nullptr);
+}
+
 void keep_terminal_mode(int descriptor, const termios& before) {
   const Quiet quiet;
   g_terminal = descriptor;
   g_mode = before;
   g_has_mode = 1;
+  if (const auto found = set_handler(SIGTSTP, on_stop); found.sa_handler == SIG_IGN)
+    sigaction(SIGTSTP, &found, nullptr);
 }
 
 void forget_terminal_mode() {
@@ -130,10 +176,17 @@ void forget_terminal_mode() {
   g_has_mode = 0;
 }
 
-void keep_last_words(std::string_view words) {
+std::string_view keep_last_words(std::string_view words) {
   const Quiet quiet;
-  g_last_words = words;
+  return std::exchange(g_last_words, words);
 }
+
+void note_resizes(bool notes) {
+  const Quiet quiet;
+  set_handler(SIGWINCH, notes ? on_resize : SIG_DFL);
+}
+
+unsigned times_resumed() { return g_resumed.load(); }
 
 void protect_from_signals(bool energised) {
   static struct sigaction stop, input, output;  // As they were before.

@@ -24,12 +24,19 @@ bool interrupted();
 bool terminated();
 void clear_interrupt();
 
-/// What a second Ctrl-C gives the terminal at `descriptor` back before it ends the process, until
-/// forget_terminal_mode().
+/// While it is lent, Ctrl-C and Ctrl-\ are for another program on the terminal that is waited for.
+void lend_keyboard(bool lent);
+
+/// What a second Ctrl-C gives the terminal at `descriptor` back before it ends the process, and Ctrl-Z before
+/// it stops it, until forget_terminal_mode(): not every shell does so itself.
 void keep_terminal_mode(int descriptor, const termios& before);
 void forget_terminal_mode();
-/// What it writes to the standard output then: what ends the marks of pastes, or the alternate screen. The
-/// text has to stay where it is; "" for nothing.
-void keep_last_words(std::string_view words);
+/// What they write to the standard output then, where it is taken: what ends the marks of pastes, or the
+/// alternate screen. The text has to stay where it is; "" for nothing. The answer is what was kept before.
+std::string_view keep_last_words(std::string_view words);
+/// How often Ctrl-Z stopped the process and it went on: the terminal was given back then.
+unsigned times_resumed();
+/// Whether a change of the terminal's size ends a wait.
+void note_resizes(bool notes);
 
 }  // namespace servoctl::cli

@@ -3,6 +3,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <utility>
+
 #include "cli/terminal/signals.hpp"
 
 namespace servoctl::cli {
@@ -12,17 +14,24 @@ constexpr int kNothing = -1;
 constexpr int kGone = -2;
 constexpr int kEscape = 0x1B;
 
+termios key_by_key(termios mode) {
+  mode.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  // Ctrl-S ends the motion as any other key does, and holds nothing back.
+  mode.c_iflag &= ~static_cast<tcflag_t>(IXON);
+  mode.c_cc[VMIN] = 0;
+  mode.c_cc[VTIME] = 0;
+  return mode;
+}
+
 }  // namespace
+
+TerminalKeys::TerminalKeys(int descriptor, const termios& before)
+    : descriptor_(descriptor), before_(before), resumed_(times_resumed()) {}
 
 std::unique_ptr<command::Keys> TerminalKeys::open(int descriptor) {
   termios before{};
   if (::tcgetattr(descriptor, &before) != 0) return nullptr;
-  auto raw = before;
-  raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-  // Ctrl-S ends the motion as any other key does, and holds nothing back.
-  raw.c_iflag &= ~static_cast<tcflag_t>(IXON);
-  raw.c_cc[VMIN] = 0;
-  raw.c_cc[VTIME] = 0;
+  const auto raw = key_by_key(before);
   keep_terminal_mode(descriptor, before);
   // What was typed before nobody meant as a key that moves something.
   if (::tcsetattr(descriptor, TCSAFLUSH, &raw) != 0) {
@@ -37,6 +46,12 @@ TerminalKeys::~TerminalKeys() {
   forget_terminal_mode();
 }
 
+void TerminalKeys::resume() {
+  if (const auto now = times_resumed(); std::exchange(resumed_, now) == now) return;
+  const auto raw = key_by_key(before_);
+  (void)::tcsetattr(descriptor_, TCSAFLUSH, &raw);
+}
+
 int TerminalKeys::next_byte() {
   pollfd input{descriptor_, POLLIN, 0};
   if (::poll(&input, 1, 0) <= 0) return kNothing;
@@ -45,6 +60,7 @@ int TerminalKeys::next_byte() {
 }
 
 TerminalKeys::Key TerminalKeys::take() {
+  resume();
   const int first = next_byte();
   character_ = first > 0 && first != kEscape ? static_cast<char>(first) : '\0';
   if (first == kNothing) return Key::none;

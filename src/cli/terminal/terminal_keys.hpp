@@ -19,12 +19,15 @@ class TerminalKeys final : public command::Keys {
   char character() const override { return character_; }
 
  private:
-  TerminalKeys(int descriptor, const termios& before) : descriptor_(descriptor), before_(before) {}
+  TerminalKeys(int descriptor, const termios& before);
   /// The next byte that was typed; -1 for none, -2 when the terminal is gone.
   int next_byte();
+  /// The mode in which they are taken, again: Ctrl-Z gave the terminal back.
+  void resume();
 
   int descriptor_;
   termios before_;
+  unsigned resumed_;
   char character_ = '\0';
 };
 

@@ -27,17 +27,20 @@ TerminalView::TerminalView(Layout layout, Screen screen, std::unique_ptr<Keys> k
     : table_(layout),
       alternate_(layout.alternate_screen),
       screen_(std::move(screen)),
-      keys_(std::move(keys)) {
+      keys_(std::move(keys)),
+      resumed_(times_resumed()) {
   for (const auto& column : layout.columns) titles_.push_back(column.title);
   if (!alternate_) return;
-  keep_last_words(kFromAlternate);
+  words_before_ = keep_last_words(kFromAlternate);
+  last_words_ = std::string(kFromAlternate) + std::string(words_before_);
+  keep_last_words(last_words_);
   screen_.write(kToAlternate);
 }
 
 TerminalView::~TerminalView() {
   if (alternate_) {
     screen_.write(kFromAlternate);
-    keep_last_words("");
+    keep_last_words(words_before_);
   } else {
     draw();
   }
@@ -97,7 +100,11 @@ void TerminalView::draw() {
   // The last line stays free for the cursor, the last column for terminals that break a full line.
   if (size.rows < 3 || size.columns < 2) return;
   table_.update();
-  auto out = to_top(size);
+  // Ctrl-Z gave the screen back.
+  const auto resumed = times_resumed();
+  const bool anew = std::exchange(resumed_, resumed) != resumed;
+  if (anew) height_ = 0;
+  auto out = (anew && alternate_ ? std::string(kToAlternate) : std::string()) + to_top(size);
   const auto lines = table_.lines(size.columns - 1, size.rows - 1);
   for (const auto& line : lines) (out += line).append(kRestOfLine).append("\r\n");
   out += kRestOfScreen;

@@ -37,6 +37,8 @@ class TerminalView final : public show::LiveView {
 
   /// As LiveTable::set_chinese().
   void set_chinese(bool chinese) { table_.set_chinese(chinese); }
+  /// As LiveTable::set_ascii().
+  void set_ascii(bool ascii) { table_.set_ascii(ascii); }
   /// Makes room for other text, which stands above the table from then on.
   void step_aside();
 
@@ -57,6 +59,9 @@ class TerminalView final : public show::LiveView {
   std::optional<Screen::Size> size_;  ///< When it was drawn.
   std::size_t height_ = 0;            ///< Lines of the table on the screen.
   bool over_ = false;
+  unsigned resumed_;
+  std::string_view words_before_;  ///< What is said at the end, outside of it.
+  std::string last_words_;         ///< The same with what leaves the screen.
 };
 
 }  // namespace servoctl::cli

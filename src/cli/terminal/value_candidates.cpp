@@ -47,6 +47,19 @@ bool begins_as_number(std::string_view text) {
          (text.front() == '-' || text.front() == '.' || (text.front() >= '0' && text.front() <= '9'));
 }
 
+/// A sign alone may begin an option.
+bool has_digit(std::string_view number) {
+  return number.find_first_of("0123456789") != std::string_view::npos;
+}
+
+/// Such as `pv`, which is typed as it stands.
+bool is_one_word(std::string_view text) {
+  constexpr std::size_t kShort = 12;
+  return !text.empty() && text.size() <= kShort && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+  });
+}
+
 std::string range_of(const drive::Meaning& meaning) {
   auto out = drive::range_text(meaning);
   if (!meaning.unit.empty()) out += (out.empty() ? "" : " ") + std::string(meaning.unit);
@@ -60,26 +73,32 @@ void Candidates::add_objects() {
   if (known == nullptr) return;
   if (begins_as_number(begun_)) return add_addresses();
   add_panel_parameters();
+  const auto group = begin_group(Candidate::Group::objects);
   for (const auto& object : known->dictionary.objects())
     for (const auto& entry : object.entries)
       if (known->parameter(entry.address) == nullptr)
         add(drive::entry_name(object, entry),
             address_of(entry.address, object.entries.size() == 1) + (chinese_ ? " " + entry.name_zh : ""));
+  begin_group(group);
 }
 
 void Candidates::add_addresses() {
+  const auto group = begin_group(Candidate::Group::objects);
   for (const auto& object : profile()->dictionary.objects())
     for (const auto& entry : object.entries)
       add(address_of(entry.address, object.entries.size() == 1),
           name_in(chinese_, object.entries.size() == 1 ? object.name : object.name + ": " + entry.name,
                   entry.name_zh));
+  begin_group(group);
 }
 
 void Candidates::add_panel_parameters() {
   const auto* known = profile();
   if (known == nullptr) return;
+  const auto group = begin_group(Candidate::Group::parameters);
   for (const auto& parameter : known->parameters)
     add(parameter.id, name_in(chinese_, parameter.name, parameter.name_zh));
+  begin_group(group);
 }
 
 /// `ID VALUE`, or `ID=VALUE` as often as one likes.
@@ -106,15 +125,23 @@ void Candidates::add_values_of(std::string_view object) {
   }
   if (meaning.labels != nullptr) {
     for (const auto& label : *meaning.labels) {
+      const auto number = std::to_string(label.value);
+      const auto name = name_in(chinese_, label.label, label.label_zh);
       const auto words = drive::label_words(label.label);
       // The shortest stands for all, as in `pv`.
       const auto word =
           *std::min_element(words.begin(), words.end(), [](auto a, auto b) { return a.size() < b.size(); });
       const bool first = drive::find_label(meaning, word) == &label;
-      add(chinese_ && !label.label_zh.empty() ? std::string_view(label.label_zh)
-          : first                             ? word
-                                              : label.label,
-          fmt::format("{} {}", label.value, name_in(chinese_, label.label, label.label_zh)));
+      // What people type is the number, or a word such as `pv`; who began a name goes on with it.
+      if (begun_.empty() && !(first && is_one_word(word)))
+        add(number, name);
+      else if (begun_.empty())
+        add(word, number + " " + std::string(name));
+      else
+        add(chinese_ && !label.label_zh.empty() ? std::string_view(label.label_zh)
+            : first                             ? word
+                                                : label.label,
+            number + " " + std::string(name));
     }
     return;
   }
@@ -129,7 +156,7 @@ void Candidates::add_values_of(std::string_view object) {
 void Candidates::add_units(std::string_view of) {
   const auto digits = begun_.find_first_not_of("-+.0123456789");
   const auto number = begun_.substr(0, digits);
-  if (number.empty() || begun_.starts_with("0x")) return;
+  if (!has_digit(number) || begun_.starts_with("0x")) return;
   for (const auto* unit : kUnitNames)
     if (of == unit || drive::conversion(unit, of)) add(number + unit);
 }
@@ -166,8 +193,8 @@ void Candidates::add_known_word(const command::Command& command, const command::
   for (const auto& value : kValuesOfCommands) {
     if (value.path != command.path || value.parameter != parameter.name) continue;
     add_values_of(value.object);
-    if (!begins_as_number(begun_)) continue;
     const auto number = begun_.substr(0, begun_.find_first_not_of("-+.0123456789"));
+    if (!has_digit(number)) continue;
     if (value.object == "607Ah" || value.object == "607Ch")
       for (const auto* unit : kPositionUnits) add(number + unit);
     if (value.object == "60FFh" || value.object == "6081h" || value.object.starts_with("6099h"))

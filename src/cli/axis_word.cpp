@@ -1,0 +1,31 @@
+#include "cli/axis_word.hpp"
+
+#include <fmt/format.h>
+
+namespace servoctl::cli {
+namespace {
+
+std::string axis_hint(const std::string& word, const Result<const cabinet::Cabinet*>& known) {
+  if (!known)
+    return fmt::format("'{}' may be an axis, but the cabinet file cannot be used: {}", word,
+                       known.error().message);
+  if (*known == nullptr) return "nodes are named by -n; there is no cabinet file here that names axes";
+  const auto axes = (*known)->select(word);
+  return axes ? std::string() : fmt::format("{}; {}", axes.error().message, axes.error().hint);
+}
+
+}  // namespace
+
+Error about_axis(Error error, const std::vector<std::string>& words, const CommandMatch& match,
+                 const std::function<Result<const cabinet::Cabinet*>()>& cabinet) {
+  const auto after = match.first + match.used;
+  if (match.command == nullptr || !includes(match.command->needs, command::Needs::node) ||
+      after >= words.size() || words[after].starts_with("-") ||
+      error.message.find("unexpected argument") == std::string::npos)
+    return error;
+  const auto more = axis_hint(words[after], cabinet());
+  if (!more.empty()) error.hint = fmt::format("{}; {}", more, error.hint);
+  return error;
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,147 @@
+// What a session tells while a line runs: how far it has come; and with --verbose the cabinet file and the
+// family that are taken and why, and what becomes of each transfer and each command for the state of a node.
+#include <unistd.h>
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <string_view>
+
+#include "base/printable.hpp"
+#include "cli/shell.hpp"
+#include "session/open_bus.hpp"
+#include "show/reading.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+/// Bytes of an object that are told.
+constexpr std::size_t kMostBytes = 16;
+
+std::string bytes_text(const Bytes& bytes) {
+  if (bytes.empty()) return "none";
+  const ByteSpan told(bytes.data(), std::min(bytes.size(), kMostBytes));
+  return to_hex(told) + (bytes.size() > kMostBytes ? " …" : "");
+}
+
+std::string value_text(const show::Reading& reading, const Bytes& bytes, bool chinese) {
+  const auto decoded = show::decode_value(reading, bytes);
+  const auto& words = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
+  const auto* label = std::get_if<std::string>(&words.data());
+  return label == nullptr ? decoded.text : fmt::format("{} {}", decoded.text, *label);
+}
+
+/// The message of an error without the place, which stands before it already.
+std::string_view message_at(const session::Exchange& one) {
+  const std::string_view message = one.result.error().message;
+  const auto place = fmt::format("node {}, object {}: ", one.node, to_string(one.object));
+  return message.starts_with(place) ? message.substr(place.size()) : message;
+}
+
+std::string exchange_text(const session::Exchange& one, const drive::Profile* profile, bool chinese) {
+  const auto target = drive::target_at(profile, one.object);
+  const show::Reading reading{.node = one.node, .target = target, .type = {}};
+  const auto name = chinese ? target.label_zh() : target.label();
+  const auto object =
+      name.empty() ? to_string(one.object)
+                   : fmt::format(fmt::runtime(chinese ? "{}（{}）" : "{} ({})"), to_string(one.object), name);
+  const double time = std::chrono::duration<double, std::milli>(one.ended - one.begun).count();
+  if (one.written != nullptr) {
+    const auto value = value_text(reading, *one.written, chinese);
+    const auto bytes = bytes_text(*one.written);
+    return one.result ? fmt::format("node {}, object {}: written in {:.1f} ms: {} (bytes: {})", one.node,
+                                    object, time, value, bytes)
+                      : fmt::format("node {}, object {}: write of {} (bytes: {}) failed after {:.1f} ms: {}",
+                                    one.node, object, value, bytes, time, message_at(one));
+  }
+  if (!one.result)
+    return fmt::format("node {}, object {}: read failed after {:.1f} ms, tries: {}: {}", one.node, object,
+                       time, one.tries, message_at(one));
+  const auto value = value_text(reading, *one.result, chinese);
+  const auto bytes = bytes_text(*one.result);
+  return one.tries == 1 ? fmt::format("node {}, object {}: read in {:.1f} ms: {} (bytes: {})", one.node,
+                                      object, time, value, bytes)
+                        : fmt::format("node {}, object {}: read in {:.1f} ms, tries: {}: {} (bytes: {})",
+                                      one.node, object, time, one.tries, value, bytes);
+}
+
+}  // namespace
+
+session::Options Shell::session_options() {
+  session::Options out;
+  out.cancelled = options_.cancelled;
+  out.protection = &protection_;
+  // Two that start at once have process numbers close together, or other times.
+  constexpr std::uint64_t kSpread = 0x9E37'79B9'7F4A'7C15;
+  const auto time = static_cast<std::uint64_t>(steady_now().time_since_epoch().count());
+  out.claim_seed = (static_cast<std::uint64_t>(::getpid()) * kSpread ^ time * kSpread) >> 16U;
+  out.tell = [this](std::string_view line) {
+    const auto turn = take_turn();
+    progress_.end();
+    console_->note("notice: " + std::string(line) + "\n");
+  };
+  out.progress = [this](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
+    const auto turn = take_turn();
+    progress_.update(done, total, now);
+  };
+  out.list_progress = [this](std::size_t done, std::size_t total, TimePoint now) {
+    const auto turn = take_turn();
+    progress_.update_list(done, total, now);
+  };
+  out.exchanged = [this](const session::Exchange& exchange) {
+    if (console_->is_verbose()) tell_exchange(exchange);
+  };
+  out.ordered = [this](const session::Session& session, std::uint8_t node, std::string_view order) {
+    if (console_->is_verbose()) tell_order(session, node, order);
+  };
+  out.waiting = [this](const session::Stretch* stretch, TimePoint now) { show_wait(stretch, now); };
+  return out;
+}
+
+void Shell::tell_exchange(const session::Exchange& exchange) {
+  const auto turn = take_turn();
+  progress_.end();
+  const auto known = noted_families_.find({session::canonical_url(exchange.session.url()), exchange.node});
+  const auto* profile = known == noted_families_.end() ? nullptr : known->second;
+  const auto text = console_->in_language(exchange_text(exchange, profile, console_->chinese()));
+  console_->detail(printable(bus_.names(exchange.session).in(text)));
+}
+
+void Shell::tell_order(const session::Session& session, std::uint8_t node, std::string_view order) {
+  const auto turn = take_turn();
+  progress_.end();
+  const auto text = console_->in_language(node == 0 ? fmt::format("sent to all nodes: {}", order)
+                                                    : fmt::format("sent to node {}: {}", node, order));
+  console_->detail(printable(bus_.names(session).in(text)));
+}
+
+void Shell::note_family(const session::Session& session, std::span<const std::uint8_t> nodes,
+                        const drive::Profile* profile) {
+  if (profile == nullptr || !console_->is_verbose()) return;
+  const auto turn = take_turn();
+  for (const auto node : nodes) noted_families_[{session::canonical_url(session.url()), node}] = profile;
+}
+
+void Shell::tell_family(const Run& run) {
+  const auto& settings = run.settings;
+  const auto* why = run.family_guessed     ? "the identity of the drive fits it, a guess"
+                    : run.family_found     ? "as it was said of this drive before"
+                    : settings.drive_typed ? "named by -d"
+                    : settings.of_cabinet  ? "that of the axis in the cabinet file"
+                                           : "set before this line, or by $SERVOCTL_DRIVE";
+  const auto& profile = *run.context.profile;
+  if (profile.data_sheet.empty())
+    return console_->detail(
+        fmt::format("family {}: objects as the drive describes them", printable(profile.family)));
+  console_->detail(fmt::format("family {}: {}; objects from {}", printable(profile.family), why,
+                               printable(profile.data_sheet.string())));
+}
+
+Result<const cabinet::Cabinet*> Shell::cabinet(const Settings& settings) {
+  auto found = cabinet_.get(settings);
+  if (found && *found != nullptr && console_->is_verbose() && !std::exchange(cabinet_told_, true))
+    console_->detail(
+        fmt::format("cabinet file {}, axes: {}", printable((*found)->file.string()), (*found)->axes.size()));
+  return found;
+}
+
+}  // namespace servoctl::cli

@@ -1,0 +1,117 @@
+#include "settings/energising.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "drive/enabling_write.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/cob_id_check.hpp"
+#include "settings/register_writes.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+constexpr std::string_view kOtherWay =
+    "run servoctl where the bus is, or use its CAN interface: socketcand://HOST/can0";
+
+bool is_parameter(const drive::Profile& profile, const Change& change, const std::string& id) {
+  return drive::place_of(profile, id) == change.target.address;
+}
+
+/// Which objects of a manufacturer energise a motor says only the data of its family.
+bool may_be_power(const drive::Profile* profile, ObjectAddress object, ByteSpan data) {
+  const bool vendor_object = object.index >= 0x2000 && object.index < 0x6000;
+  return profile == nullptr && vendor_object && load_le(data) != 0;
+}
+
+/// Where a network gives a motor no power: Errc::refused for what energises one without the controlword.
+Result<void> check_power(const show::Desk& desk, std::uint8_t node, ObjectAddress object, const Bytes& data) {
+  const auto no_power = desk.session->network().why_no_power();
+  if (no_power.empty()) return {};
+  if (may_be_power(desk.profile, object, data))
+    return fail(drive_error(
+        Errc::refused, node, object,
+        fmt::format("without its family it is not known whether this energises the motor, and {}", no_power),
+        "name the family: -d FAMILY"));
+  if (drive::power_parameter(desk.profile, object, data) == nullptr) return {};
+  return fail(drive_error(
+      Errc::refused, node, object,
+      fmt::format("this energises the motor, or sets it in motion, without the controlword, and {}",
+                  no_power),
+      std::string(kOtherWay)));
+}
+
+/// What the write does beside changing a value; empty when nothing, as for a password.
+std::string_view reason_to_ask(const show::Desk& desk, const Change& change) {
+  const auto* profile = desk.profile;
+  const auto* entry = change.target.entry;
+  const auto* parameter = change.target.parameter;
+  const auto index = change.target.address.index;
+  if (profile != nullptr && is_parameter(*profile, change, profile->rules.store.unlock)) return {};
+  if (enables(change)) return "This enables the drive: the motor is energised and may move.";
+  if (power_parameter(desk, change) != nullptr)
+    return drive::meaning(change.target, change.node).effect == od::Effect::restart
+               ? "After a restart of the drive this may energise the motor without the controlword."
+               : "This may energise the motor, or set it in motion, without the controlword; `disable` may not "
+                 "stop it.";
+  if (index == objects::kStoreIndex || index == objects::kRestoreIndex ||
+      (entry != nullptr && entry->command) || (parameter != nullptr && parameter->command))
+    return "This starts an action, or stores or restores parameters.";
+  if (profile != nullptr && is_parameter(*profile, change, profile->rules.nmt.node_id))
+    return "After a restart the drive has another node-ID.";
+  if (profile != nullptr && is_parameter(*profile, change, profile->rules.nmt.bitrate))
+    return "After a restart the drive has another bitrate.";
+  return {};
+}
+
+}  // namespace
+
+bool enables(const Change& change) { return drive::is_enabling_write(change.target.address, change.data); }
+
+const drive::PowerParameter* power_parameter(const show::Desk& desk, const Change& change) {
+  return drive::power_parameter(desk.profile, change.target.address, change.data);
+}
+
+Result<void> check_writable(const show::Desk& desk, std::uint8_t node, ObjectAddress object,
+                            const Bytes& data) {
+  if (const auto free = session::check_cob_id(desk.profile, object, data, node); !free) return free;
+  return check_power(desk, node, object, data);
+}
+
+Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) {
+  const auto no_power = desk.session->network().why_no_power();
+  for (const auto& change : changes) {
+    if (!no_power.empty() && enables(change))
+      return fail(
+          show::located(make_error(Errc::refused, fmt::format("this enables the drive, and {}", no_power),
+                                   std::string(kOtherWay)),
+                        change.node, change.target.address));
+    if (const auto possible = check_power(desk, change.node, change.target.address, change.data); !possible)
+      return possible;
+  }
+  for (const auto& change : changes) {
+    auto reason = reason_to_ask(desk, change);
+    if (reason.empty()) reason = register_reason(desk, change);
+    if (reason.empty()) continue;
+    const auto question = fmt::format("Write {} on node {}? {}", name_of(change.target), change.node, reason);
+    if (const auto answer = desk.confirm(question); !answer) return answer;
+  }
+  return {};
+}
+
+void tell_power_parameters(show::Desk& desk, std::span<const Change> changes,
+                           std::span<const Result<session::Written>> written) {
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const auto& change = changes[i];
+    const auto* parameter = power_parameter(desk, change);
+    if (parameter == nullptr || is_told_not_at_rest(desk, change.target.address) ||
+        session::write_end(written[i], change.target.address) == session::WriteEnd::not_written)
+      continue;
+    desk.notices.push_back(fmt::format(
+        "node {}: its motor may get power or move without the controlword, and servoctl neither supervises nor "
+        "stops it: `param set {}={} -n {}`",
+        change.node, parameter->end, parameter->value, change.node));
+  }
+}
+
+}  // namespace servoctl::settings

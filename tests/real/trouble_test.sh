@@ -1,0 +1,177 @@
+#!/usr/bin/env bash
+# The bus is lost in the middle of each kind of line: told at once and once, the line ends with an error, the next one works.
+# Runs inside with-vcan.sh, with can0 and can1 on one bus, errors by /dev/can0.inject. usage: trouble_test.sh SERVOCTL
+set -u
+servoctl=$1
+work=$(mktemp -d)
+sim=
+trap 'kill $sim 2>/dev/null; rm -rf "$work"' EXIT
+failures=0
+checks=0
+
+[ "${VCAN_GUEST:-}" = uml ] || { echo "skipped: there is no can0 and can1 with errors to be injected"; exit 0; }
+fail() { failures=$((failures + 1)); printf 'FAILED %s\n' "$*"; cat "$work/out" "$work/err"; }
+drive() { "$servoctl" -b can0 -n 1 -d gsd600 "$@"; }
+
+# trouble HOW: what happens to can0; mend HOW: it is back.
+trouble() {
+  case $1 in
+    down) ip link set can0 down ;;
+    bus-off) printf 'sb000256\r' >/dev/can0.inject ;;
+    passive) printf 'sp140000\r' >/dev/can0.inject ;;
+  esac
+}
+mend() {
+  case $1 in
+    down) ip link set can0 up ;;
+    bus-off) ip link set can0 down; ip link set can0 up ;;
+    passive) printf 'sa000000\r' >/dev/can0.inject ;;
+  esac
+  sleep 0.3
+}
+works() {  # works WHAT: the next line, as if nothing had been
+  checks=$((checks + 1))
+  for _ in 1 2 3 4 5; do drive read 0x1000 >"$work/out" 2>"$work/err" && return; sleep 0.3; done
+  fail "$1: the next line does not work"
+}
+
+# during HOW CODES WORDS...: the line that is under way ends with one of these exit codes, in time, and says why once.
+during() {
+  local how=$1 codes=$2 begin code
+  shift 2
+  checks=$((checks + 1))
+  drive "$@" >"$work/out" 2>"$work/err" &
+  local line=$!
+  sleep 1
+  begin=$(date +%s%N)
+  trouble "$how"
+  wait "$line"
+  code=$?
+  local took=$((($(date +%s%N) - begin) / 1000000))
+  mend "$how"
+  [[ " $codes " == *" $code "* ]] || fail "$how in $1: exit code $code"
+  [ "$took" -lt 9000 ] || fail "$how in $1: told after $took ms"
+  [ "$(grep -c '^error' "$work/err")" -le 1 ] || fail "$how in $1: told more than once"
+  if [ "$code" -ne 0 ]; then grep -qE 'can0' "$work/err" || fail "$how in $1: it does not name the bus"; fi
+  works "$how in $1"
+}
+
+"$servoctl" sim gsd600@1 --bus can1 >"$work/sim" 2>&1 &
+sim=$!
+for _ in $(seq 100); do grep -q 'drive on' "$work/sim" && break; sleep 0.1; done
+drive backup "$work/good.json" >"$work/out" 2>"$work/err" || fail "a backup in peace"
+for _ in $(seq 300); do printf 'read 0x1000\nwait 10ms\n'; done >"$work/reads"
+# One after the other, so that the bus goes in the midst of one.
+for i in $(seq 40); do printf 'backup %s/cut%s.json\n' "$work" "$i"; done >"$work/backups"
+
+for how in down bus-off; do
+  during "$how" 3 monitor --for 20s
+  during "$how" 3 watch 0x6041 --for 20s
+  during "$how" 3 nmt watch --for 20s
+  during "$how" 3 run "$work/reads"
+  rm -f "$work"/cut*.json
+  during "$how" 3 run "$work/backups"
+  for file in "$work"/cut*.json; do drive verify "$file" >"$work/out" 2>"$work/err" || fail "$how: half a backup looks whole"; done
+done
+
+# Error passive is no loss: the line goes on, and it is told once.
+checks=$((checks + 1))
+drive monitor --for 4s >"$work/out" 2>"$work/err" &
+line=$!
+sleep 1; trouble passive; sleep 0.3; trouble passive; wait "$line"; code=$?
+mend passive
+[ "$code" -eq 0 ] || fail "error passive in monitor: exit code $code"
+[ "$(cat "$work/out" "$work/err" | grep -ci 'passive')" -ge 1 ] || fail "error passive is not told"
+[ "$(grep -ci 'passive' "$work/err")" -le 1 ] || fail "error passive is told more than once"
+works "error passive"
+
+# At a prompt, or between lines of a pipe: told while nobody types, and the next line connects anew.
+for how in down bus-off; do
+  checks=$((checks + 1))
+  mkfifo "$work/$how"
+  drive <"$work/$how" >"$work/out" 2>"$work/err" &
+  line=$!
+  exec 9>"$work/$how"
+  printf 'read 0x1000\n' >&9; sleep 1.5
+  trouble "$how"; sleep 1; mend "$how"
+  printf 'read 0x1000\nread 0x1000\n' >&9; sleep 1.5
+  exec 9>&-
+  wait "$line"
+  [ "$(grep -c '0x00020192' "$work/out")" -ge 2 ] || fail "$how between two lines: they do not go on"
+  [ "$(grep -c '^error' "$work/err")" -le 1 ] || fail "$how between two lines: told more than once"
+done
+
+# cut WHAT WORDS...: the interface goes down behind the write so many frames after the first one, in the midst of the line. It ends
+# with exit code 3, names the bus, and says how it goes on; what it had not written yet is not written.
+cut() {
+  local what=$1 after=$2 line dump code
+  shift 2
+  checks=$((checks + 1))
+  # Requests that write (0x2n), as they pass.
+  stdbuf -oL candump -L can0,601:7FF 2>/dev/null | grep --line-buffered -E '601#2' >"$work/writes" &
+  dump=$!
+  "$@" >"$work/out" 2>"$work/err" &
+  line=$!
+  for _ in $(seq 500); do [ "$(wc -l <"$work/writes")" -ge "$after" ] && break; kill -0 "$line" 2>/dev/null || break; sleep 0.01; done
+  kill -0 "$line" 2>/dev/null || fail "$what: it was over before the bus went"
+  trouble down
+  wait "$line"
+  code=$?
+  mend down
+  kill "$dump" 2>/dev/null
+  [ "$code" -eq 3 ] || fail "$what: exit code $code"
+  [ "$(grep -c '^error.*can0' "$work/err")" -eq 1 ] || fail "$what: the bus is not named once"
+  grep -q -- '--resume' "$work/err" || fail "$what: it does not say how it goes on"
+  cp "$work/err" "$work/cut.err"
+  works "$what"
+}
+
+# A restore in the midst of its writes, many values: it says how it goes on, and goes on from where it was.
+kill "$sim"; wait "$sim" 2>/dev/null
+"$servoctl" sim 'gsd600@1?delay=10ms' --bus can1 >"$work/sim" 2>&1 &
+sim=$!
+for _ in $(seq 100); do drive read 0x1000 >"$work/out" 2>&1 && break; sleep 0.1; done
+{
+  echo on-error continue  # Some of them take no number between.
+  "$servoctl" param list 'Pn02*' -d gsd600 --json |
+    jq -r '.result[] | select(.access == "rw" and .type == "u16" and .max > .default and .effect == "immediate") | "\(.object.index) \(.object.sub) \(.default + 1)"' |
+    while read -r index sub value; do printf 'write 0x%X:%d %d\n' "$index" "$sub" "$value"; done
+} >"$work/changes"
+drive run "$work/changes" >"$work/out" 2>"$work/err"
+drive verify "$work/good.json" --json >"$work/json" 2>"$work/err"
+different=$(jq '.result[0].different' "$work/json")
+[ "${different:-0}" -ge 12 ] || fail "only ${different:-0} values differ"
+cut "down in restore" 4 drive restore "$work/good.json" --yes
+left=$(drive verify "$work/good.json" --json 2>/dev/null | jq '.result[0].different')
+if [ "$left" -eq 0 ] || [ "$left" -ge "$different" ]; then fail "down in restore: $left of $different values differ still: it was not cut in the midst"; fi
+drive restore "$work/good.json" --resume --yes >"$work/out" 2>"$work/err" || fail "a restore that was cut does not go on"
+drive verify "$work/good.json" >"$work/out" 2>"$work/err" || fail "the drive is not as the backup says"
+
+# An apply of a cabinet, the same.
+{
+  printf '[bus.main]\nurl = "can0"\n[axis.one]\nbus = "main"\nnode = 1\nfamily = "gsd600"\n[axis.one.parameters]\n'
+  printf '"0x6083" = 1111\n"0x6084" = 2222\n"0x6081" = 3333\nPn0214 = "47Hz"\n'
+  grep write "$work/changes" | head -6 | while read -r _ object value; do printf '"%s" = %s\n' "$object" "$value"; done
+} >"$work/cabinet.toml"
+cabinet() { "$servoctl" --cabinet "$work/cabinet.toml" cabinet "$@"; }
+cut "down in cabinet apply" 2 cabinet apply --yes
+if cabinet plan >"$work/out" 2>"$work/err"; then fail "down in cabinet apply: nothing was left to do"; fi
+cabinet apply --resume --yes >"$work/out" 2>"$work/err" || fail "an apply that was cut does not go on"
+cabinet plan >"$work/out" 2>"$work/err" || fail "the plan is not empty behind it"
+
+# What a line can do without it asks last: identities, and what tells the family. A bus that is lost then is told as well.
+kill "$sim"; wait "$sim" 2>/dev/null
+"$servoctl" sim 'gsd600@1?delay=300ms' --bus can1 >"$work/sim" 2>&1 &
+sim=$!
+for _ in $(seq 100); do grep -q 'drive on' "$work/sim" && break; sleep 0.1; done
+for after in 0.5 3; do
+  checks=$((checks + 1))
+  "$servoctl" -b can0 scan -n 1 >"$work/out" 2>"$work/err" &
+  line=$!
+  sleep "$after"; trouble down; wait "$line"; code=$?
+  mend down
+  { [ "$code" -eq 3 ] && [ "$(grep -c '^error: can0 went down' "$work/err")" -eq 1 ]; } || fail "down $after s into a scan: exit code $code"
+done
+
+printf '%d checks, %d failed\n' "$checks" "$failures"
+[ "$failures" -eq 0 ]
