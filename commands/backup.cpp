@@ -110,7 +110,8 @@ Result<Value> run_backup(Context& context, const Arguments& arguments) {
     files.push_back(many ? path / fmt::format("node-{}{}", node, settings::extension_of(format)) : path);
   for (const auto& file : files)
     if (const auto agreed = may_replace(context, file); !agreed) return fail(agreed.error());
-  const auto snapshots = session::take_snapshots(*context.session, *context.profile, context.nodes, *wanted);
+  const auto snapshots =
+      session::take_snapshots_patiently(*context.session, *context.profile, context.nodes, *wanted);
   report::Table table;
   table.columns = {
       {"node"}, {"file"}, {"values", "values saved"}, {"left_out", "left out"}, {"error", "", Show::json}};

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "base/number.hpp"
+#include "can/error_frame.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "command/frame_filter.hpp"
@@ -80,6 +81,7 @@ class Monitor {
   Result<void> run(std::optional<Duration> length) {
     traffic::Listener listener;
     listener.on_frame = [this](const can::Frame& frame, TimePoint time) {
+      if (const auto error = can::parse_wire_error(frame)) errors_.add(*error);
       load_.add(frame, time);
       log_->add(time - begin_, context_->session->url(), frame);
     };
@@ -89,6 +91,7 @@ class Monitor {
       if (view_ != nullptr) view_->refresh(context_->session->now());
     };
     listener.is_over = [this] { return view_ != nullptr && view_->is_over(); };
+    listener.on_bus = [this](bool back, std::string_view line) { tell_bus(back, line); };
     context_->session->can()->bus().gather(kDelay);
     const auto ended = traffic::listen(*context_->session, length, listener);
     context_->session->can()->bus().gather(Duration::zero());
@@ -104,15 +107,17 @@ class Monitor {
     report::Table services;
     services.columns = {{"service"}, {"frames"}};
     for (const auto& [service, count] : log_->services()) services.rows.push_back({service, count});
-    return {{"frames", log_->count()},
-            {"seconds", std::round(seconds * 1000) / 1000},
-            {"frames_per_second",
-             seconds > 0 ? Value(std::round(static_cast<double>(log_->count()) / seconds)) : Value(),
-             report::Show::everywhere, "frames a second"},
-            {"load", percent(load_.mean(now)), report::Show::everywhere, "bus load (%)"},
-            {"peak_load", percent(load_.peak()), report::Show::everywhere, "peak in 100 ms (%)"},
-            {"heartbeats_lost", lost_, report::Show::everywhere, "heartbeats lost"},
-            {"services", std::move(services)}};
+    return {
+        {"frames", log_->count()},
+        {"seconds", std::round(seconds * 1000) / 1000},
+        {"frames_per_second",
+         seconds > 0 ? Value(std::round(static_cast<double>(log_->count()) / seconds)) : Value(),
+         report::Show::everywhere, "frames a second"},
+        {"load", percent(load_.mean(now)), report::Show::everywhere, "bus load (%)"},
+        {"peak_load", percent(load_.peak()), report::Show::everywhere, "peak in 100 ms (%)"},
+        {"heartbeats_lost", lost_, report::Show::everywhere, "heartbeats lost"},
+        {"wire_errors", report::text_or_null(errors_.text()), report::Show::everywhere, "errors on the wire"},
+        {"services", std::move(services)}};
   }
 
  private:
@@ -128,11 +133,20 @@ class Monitor {
     }
   }
 
+  /// It is a part of what happened on the bus.
+  void tell_bus(bool back, std::string_view line) {
+    log_->remark(context_->session->now() - begin_, "alarm", {}, fmt::format("ALARM {}", line),
+                 back ? "bus-back" : "bus-lost");
+    log_->flush();
+    if (view_ != nullptr) view_->refresh(context_->session->now());
+  }
+
   Context* context_;
   traffic::FrameLog* log_;
   show::LiveView* view_;
   traffic::BusLoad load_;
   TimePoint begin_;
+  can::WireErrors errors_;
   std::size_t lost_ = 0;
 };
 

@@ -5,6 +5,7 @@
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/bus_return.hpp"
 #include "session/can_network.hpp"
 #include "session/scan.hpp"
 #include "session/stretch.hpp"
@@ -199,6 +200,30 @@ class Log {
   report::List events_;
 };
 
+/// From now on, or anew behind a bus that was lost.
+void guard(session::Session& session, std::span<const std::uint8_t> nodes, const Plan& plan) {
+  if (!plan.guard_time) return;
+  for (const auto node : nodes) session.can()->guard(node, {*plan.guard_time, plan.life_factor});
+}
+
+/// Until its end, or Ctrl-C, which is no error.
+Result<void> watch(session::Session& session, std::span<const std::uint8_t> nodes, const Plan& plan,
+                   Log& log) {
+  const session::Stretch stretch(session, plan.length ? session.now() + *plan.length : kNever);
+  session::BusReturn bus(session, session::BusReturn::to_people(session));
+  while (session.now() < stretch.end()) {
+    const auto waited = session.wait([] { return false; }, std::min(stretch.end(), session.now() + kSlice));
+    log.take_events();
+    if (waited) continue;
+    if (waited.error().code == Errc::interrupted) return {};
+    const auto back = waited.error().code == Errc::bus ? bus.wait(waited.error(), stretch.end())
+                                                       : Result<void>(fail(waited.error()));
+    if (!back) return back;
+    guard(session, nodes, plan);
+  }
+  return {};
+}
+
 /// Guarding is asked, and a drive that was guarded once may take its end for an error.
 report::Table guarding_frames(std::span<const std::uint8_t> nodes) {
   report::Table table;
@@ -224,18 +249,12 @@ Result<Value> run_nmt_watch(Context& context, const Arguments& arguments) {
   if (plan->guard_time && context.dry_run) return Value(guarding_frames(*nodes));
   Log log(context, *nodes);
   if (plan->guard_time)
-    for (const auto node : *nodes) session.can()->guard(node, {*plan->guard_time, plan->life_factor});
+    guard(session, *nodes, *plan);
   else
     log.told(ask_for_heartbeats(session, *nodes));
-  const session::Stretch stretch(session, plan->length ? session.now() + *plan->length : kNever);
-  const auto end = stretch.end();
-  Result<bool> waited = false;
-  while (waited && session.now() < end) {
-    waited = session.wait([] { return false; }, std::min(end, session.now() + kSlice));
-    log.take_events();
-  }
+  const auto watched = watch(session, *nodes, *plan, log);
   session.can()->stop_guarding();
-  if (!waited && waited.error().code != Errc::interrupted) return fail(waited.error());
+  if (!watched) return fail(watched.error());
   return log.summary();
 }
 

@@ -82,6 +82,7 @@ const Command kParamGet{
     .effect = Effect::reads,
     .run = run_param_get,
     .check = check_param_get,
+    .brief = true,
     .on_registers = true,
 };
 

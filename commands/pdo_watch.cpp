@@ -146,6 +146,7 @@ Result<void> listen(Context& context, show::SampleWriter& writer, std::span<Watc
   writer.show_in(live.get());
   traffic::Listener listener;
   listener.is_over = [&] { return live && live->is_over(); };
+  listener.on_bus = session::BusReturn::to_people(session);
   listener.on_pause = [&] {
     writer.flush();
     if (live) live->refresh(session.now());

@@ -159,6 +159,7 @@ const Command kRead{
     .effect = Effect::reads,
     .run = run_read,
     .check = check_read,
+    .brief = true,
     .one_file = "--to",
     .on_registers = true,
 };

@@ -178,6 +178,7 @@ Result<Value> run_watch(Context& context, const Arguments& arguments) {
   listener.next = [&] { return next; };
   listener.on_pause = [&] { watching.refresh(); };
   listener.is_over = [&] { return watching.is_over(); };
+  listener.on_bus = session::BusReturn::to_people(session);
   listener.on_time = [&](TimePoint now) -> Result<void> {
     const auto looked = watching.look(now - begin);
     // A drive that answers slowly is not asked for what was missed.

@@ -31,7 +31,8 @@ struct SavedAxis {
 Result<settings::Backup> read_axis(show::Desk& desk, const Axis& axis,
                                    std::span<const drive::Family> families) {
   if (const auto held = hold_axis_identity(desk, axis, families); !held) return fail(held.error());
-  auto snapshot = std::move(session::take_snapshots(*desk.session, *desk.profile, desk.nodes, {}).front());
+  auto snapshot =
+      std::move(session::take_snapshots_patiently(*desk.session, *desk.profile, desk.nodes, {}).front());
   if (!snapshot) return fail(snapshot.error());
   auto backup = settings::make_backup(desk, *snapshot);
   settings::tell_left_out(desk, backup);

@@ -1,6 +1,11 @@
 #include "can/error_frame.hpp"
 
+#include <fmt/format.h>
 #include <linux/can/error.h>
+
+#include <numeric>
+
+#include "base/text.hpp"
 
 namespace servoctl::can {
 namespace {
@@ -53,6 +58,19 @@ std::optional<WireError> parse_wire_error(const Frame& frame) {
   // Some drivers mark an overflow of their controller as an error of the bus as well.
   if ((frame.id & CAN_ERR_CRTL) != 0 && frame.data[1] != 0) return std::nullopt;
   return WireError::other;
+}
+
+std::size_t WireErrors::damage() const {
+  return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0}) - count(WireError::acknowledge) -
+         count(WireError::overload);
+}
+
+std::string WireErrors::text() const {
+  std::string out;
+  for (std::size_t i = 0; i < counts_.size(); ++i)
+    if (counts_[i] > 0)
+      servoctl::append(out, fmt::format("{} × {}", counts_[i], can::text(static_cast<WireError>(i))), ", ");
+  return out;
 }
 
 bool while_sending(const Frame& frame) {

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "can/frame.hpp"
@@ -31,6 +34,20 @@ std::string_view text(WireError error);
 std::optional<WireError> parse_wire_error(const Frame& frame);
 /// Whether the controller was sending when it happened.
 bool while_sending(const Frame& frame);
+/// How many of each were told.
+class WireErrors {
+ public:
+  void add(WireError error) { ++counts_[static_cast<std::size_t>(error)]; }
+  std::size_t count(WireError error) const { return counts_[static_cast<std::size_t>(error)]; }
+  /// Frames that were damaged on the wire: a missing acknowledge damages none, nor does an overload frame.
+  std::size_t damage() const;
+  /// `12 × stuff error, 3 × form error`; empty where there were none.
+  std::string text() const;
+
+ private:
+  std::array<std::size_t, kWireErrors> counts_{};
+};
+
 /// What the transceiver says of its wires, in words; empty when it says nothing.
 std::string_view transceiver_text(const Frame& frame);
 

@@ -65,7 +65,9 @@ bool set_filters(int fd, std::span<const Filter> filters) {
 }
 
 bool configure(int fd, std::span<const Filter> filters) {
-  constexpr can_err_mask_t kReports = CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED;
+  // Of what is wrong on the wire, too, as far as the driver tells it: silence has a reason then.
+  constexpr can_err_mask_t kReports = CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED |
+                                      CAN_ERR_PROT | CAN_ERR_ACK | CAN_ERR_TRX | CAN_ERR_BUSERROR;
   constexpr int kReceiveBytes = 4 << 20;
   // Beyond the limit for ordinary users where that is allowed; otherwise the kernel takes what it allows.
   if (!set_option(fd, SOL_SOCKET, SO_RCVBUFFORCE, kReceiveBytes))

@@ -134,7 +134,7 @@ void DuplicateWatch::on_answer(std::uint8_t id, const can::Frame& frame, TimePoi
   if (request == node.open.end()) return on_surplus(id, frame, now);
   slowest_ = std::max<Duration>(slowest_, now - request->time);
   last_answer_ = now;
-  if (!request->segment) node.answered.push_back({request->object, false});
+  if (!request->segment) node.answered.push_back({request->object, request->time, false});
   if (node.answered.size() > kRemembered) node.answered.erase(node.answered.begin());
   node.open.erase(request);
 }
@@ -149,6 +149,7 @@ void DuplicateWatch::on_surplus(std::uint8_t id, const can::Frame& frame, TimePo
   });
   if (first == node.answered.end()) return;
   first->twice = true;
+  slowest_second_ = std::max<Duration>(slowest_second_, now - first->asked);
   const auto twice = std::count_if(node.answered.begin(), node.answered.end(),
                                    [](const Answered& answered) { return answered.twice; });
   if (twice >= kProof)

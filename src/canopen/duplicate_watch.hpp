@@ -42,6 +42,8 @@ class DuplicateWatch {
   void forget(std::uint8_t node) { nodes_[node] = {}; }
   /// The longest time from a request to its first answer so far; zero until there was one.
   Duration slowest_answer() const { return slowest_; }
+  /// The longest time from a request to the second of two answers to it; zero until there was one.
+  Duration slowest_second() const { return slowest_second_; }
   /// When the last answer came to a request that was open; empty until there was one.
   std::optional<TimePoint> last_answer() const { return last_answer_; }
 
@@ -56,6 +58,7 @@ class DuplicateWatch {
   };
   struct Answered {
     ObjectAddress object;
+    TimePoint asked;
     bool twice = false;
   };
   /// What an object that never changes was answered by.
@@ -86,6 +89,7 @@ class DuplicateWatch {
 
   std::array<Node, 128> nodes_;
   Duration slowest_{};
+  Duration slowest_second_{};
   std::optional<TimePoint> last_answer_;
   std::deque<NodeEvent> events_;
 };

@@ -110,6 +110,12 @@ void NodeWatch::update_deadline() {
   for (const auto& node : nodes_) deadline_ = std::min(deadline_, node.deadline());
 }
 
+void NodeWatch::on_gap(TimePoint now) {
+  for (auto& node : nodes_)
+    if (node.last) node.last = now;
+  update_deadline();
+}
+
 void NodeWatch::set_guarded(std::uint8_t node, bool guarded) {
   nodes_[node].guarded = guarded;
   update_deadline();

@@ -78,6 +78,8 @@ class NodeWatch {
   /// The node (0: every node) was sent an NMT command: the state of one that sends no heartbeat is unknown
   /// now.
   void on_command(std::uint8_t node);
+  /// Nothing was heard until `now`, because the bus was away: silence counts from here.
+  void on_gap(TimePoint now);
   /// Forgets the state and the period of the node, before it is sent a reset.
   void forget(std::uint8_t node);
 

@@ -212,8 +212,9 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   tell_trace_failure(run);
   auto* session = run.context.session;
   const bool leaves_power = session != nullptr && !session->energised().empty();
-  // A lost interface does not come back by itself: the next line opens it again.
-  if (is_lost) bus_.lose(*session);
+  // The next line opens it again: a lost interface does not come back by itself, and behind one that did
+  // others may be.
+  if (is_lost || (session != nullptr && session->was_away())) bus_.lose(*session);
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
   auto value = result ? *result : Value();
   const auto node = errors.empty() ? std::nullopt : errors.front().node;

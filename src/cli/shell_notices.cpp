@@ -61,7 +61,8 @@ void Shell::hear_second_node(const Run& run) {
     return;
   }
   // What it cannot tell is told by the next line.
-  (void)session::settle_duplicates(*session, run.context.nodes, session::kBriefly);
+  const auto least = run.command->brief ? session::kBriefly : session::kThoroughly;
+  (void)session::settle_duplicates(*session, run.context.nodes, least);
 }
 
 /// Whether the bus of the line was lost. It is told where the line asked for something that it can do

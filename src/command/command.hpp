@@ -107,6 +107,9 @@ struct Command {
   bool way_out = false;       ///< Goes as far as it can, where some of its axes cannot take it.
   bool opens_bus = false;     ///< Its words decide which end of the bus it needs: it opens it itself.
   bool of_front_end = false;  ///< It runs other command lines: the front end does it, `run` is null.
+  /// Scripts call it again and again: alone in its process it waits 2 ms for a second node of the same
+  /// number, others 20.
+  bool brief = false;
   bool goes_on = false;       ///< It shows what comes until it is ended: one bus and family at a time.
   /// The word or option that names a file it writes whole: a second bus or family would replace it.
   std::string_view one_file = {};

@@ -12,6 +12,9 @@
 namespace servoctl::session {
 namespace {
 
+/// So many damaged frames are no accident.
+constexpr std::size_t kNoAccident = 3;
+
 using canopen::NmtCommand;
 using canopen::NmtState;
 
@@ -90,14 +93,26 @@ Result<bool> CanNetwork::step(TimePoint deadline) {
   if (!frame) return fail(std::move(frame.error()));
   frame_ = *frame;
   stepped_at_ = frame_ ? std::max(stepped_at_, bus_->arrived()) : now();
-  if (frame_) hear(*frame_);
+  // What the kernel tells of the wire has no identifier of a node.
+  const bool is_message = frame_ && !frame_->error;
+  if (is_message) hear(*frame_);
   watch_.on_time(stepped_at_);
   guard_.on_time(stepped_at_);
   if (!frame_) return false;
+  if (is_message) {
+    dispatch(*frame_);
+    return true;
+  }
+  if (const auto error = can::parse_wire_error(*frame_)) wire_errors_.add(*error);
   if (const auto report = can::parse_report(*frame_))
     if (const auto alive = on_report(*report); !alive) return fail(alive.error());
-  dispatch(*frame_);
   return true;
+}
+
+Result<void> CanNetwork::recover(TimePoint deadline) {
+  auto back = bus_->recover(deadline);
+  if (back) watch_.on_gap(now());
+  return back;
 }
 
 void CanNetwork::hear(const can::Frame& frame) {
@@ -141,6 +156,10 @@ std::vector<std::string> CanNetwork::take_notices() {
 }
 
 std::string CanNetwork::silence_hint(std::uint8_t node) const {
+  if (wire_errors_.damage() >= kNoAccident)
+    return fmt::format(
+        "there were errors on the wire ({}): another bitrate, wiring or termination? `doctor {}` tells them apart",
+        wire_errors_.text(), canonical_url(url_));
   const auto start = state_command(node, NodeState::pre_operational);
   if (records_.state(node) == NodeState::stopped)
     return fmt::format("node {} is stopped (NMT, by its heartbeat) and cannot answer SDO: `{}`", node, start);

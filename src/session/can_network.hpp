@@ -14,6 +14,7 @@
 
 #include "can/bus.hpp"
 #include "can/controller_report.hpp"
+#include "can/error_frame.hpp"
 #include "canopen/duplicate_watch.hpp"
 #include "canopen/node_guard.hpp"
 #include "canopen/node_watch.hpp"
@@ -49,7 +50,7 @@ class CanNetwork final : public Network {
   TimePoint next_event() const override;
   TimePoint keep_up() override;
   int poll_fd() const override { return bus_->poll_fd(); }
-  Result<void> recover(TimePoint deadline) override { return bus_->recover(deadline); }
+  Result<void> recover(TimePoint deadline) override;
   std::unique_ptr<ObjectChannel> object_channel(std::uint8_t node, Duration timeout) override;
   const NodeRecords& records() const override { return records_; }
   std::optional<NodeEvent> take_event() override;
@@ -83,6 +84,9 @@ class CanNetwork final : public Network {
   can::Bus& bus() { return *bus_; }
   /// What the controller reported since the last call; the same report in succession is told once.
   std::vector<can::ControllerReport> take_reports() { return std::exchange(reports_, {}); }
+
+  /// What the controller told of errors on the wire since the bus was opened; drivers tell what they can.
+  const can::WireErrors& wire_errors() const { return wire_errors_; }
 
   canopen::NodeWatch& watch() { return watch_; }
   /// Whether two nodes have one number.
@@ -170,6 +174,7 @@ class CanNetwork final : public Network {
   canopen::NodeGuard guard_;
   std::optional<Heartbeat> heartbeat_;
   std::optional<SyncProduction> sync_;
+  can::WireErrors wire_errors_;
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
   std::map<std::uint8_t, KnownPdos> pdos_;

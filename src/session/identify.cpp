@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 
 #include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
@@ -11,6 +12,9 @@
 
 namespace servoctl::session {
 namespace {
+
+/// For one that answers twice, however slow the second is.
+constexpr Duration kMostPatience = std::chrono::seconds(1);
 
 /// A node that refuses a read is there; one that does not answer, or is not reached, is not known.
 bool tells(const Result<Bytes>& answer) {
@@ -140,15 +144,17 @@ Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> n
       std::max<Duration>(least, std::min<Duration>(2 * duplicates.slowest_answer(), kThoroughly));
   const auto since = duplicates.last_answer().value_or(session.now());
   if (const auto heard = listen_until(session, since + patience); !heard) return heard;
+  constexpr std::array kToTell = {objects::kSerialNumber, objects::kDeviceType, objects::kVendorId,
+                                  objects::kProductCode};
   std::vector<SdoRequest> requests;
   for (const auto node : nodes)
     if (duplicates.is_suspect(node))
-      for (const auto object :
-           {objects::kSerialNumber, objects::kDeviceType, objects::kVendorId, objects::kProductCode})
-        requests.push_back({node, object, {}});
+      for (const auto object : kToTell) requests.push_back({node, object, {}});
   if (requests.empty()) return {};
+  // The slower one answers one request after the other.
+  const auto second = duplicates.slowest_second() * (kToTell.size() + 1);
   (void)session.transfer(requests);
-  return listen_until(session, session.now() + kThoroughly);
+  return listen_until(session, session.now() + std::clamp<Duration>(second, kThoroughly, kMostPatience));
 }
 
 Result<void> refuse_duplicate(Session& session, std::uint8_t node) {

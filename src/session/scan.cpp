@@ -96,7 +96,7 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
     session.identities().keep(identity, session.watch().boots(identity.node));
   }
   // Where one did not answer, a second node had the whole timeout already.
-  const auto least = found->size() < nodes.size() ? kBriefly : kThoroughly;
+  const auto least = found->size() < nodes.size() ? kBriefly : kScanning;
   std::vector<std::uint8_t> there;
   for (const auto& identity : *found) there.push_back(identity.node);
   if (const auto settled = settle_duplicates(session, there, least); !settled) return fail(settled.error());

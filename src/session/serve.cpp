@@ -40,7 +40,7 @@ Result<void> serve(Session& session, sim::Cell& cell) {
     if (cancelled && cancelled()) return {};
     const auto frame = bus.receive(next);
     if (!frame) return fail(frame.error());
-    if (!*frame) continue;
+    if (!*frame || (*frame)->error) continue;
     for (const auto& drive : cell.drives) drive->on_frame(**frame, bus.now());
   }
 }

@@ -130,6 +130,11 @@ class Session {
   /// What takes its time now, the innermost last; kept by Stretch itself.
   std::vector<const Stretch*>& stretches() { return stretches_; }
 
+  /// The bus was lost, and came back while something waited for it (BusReturn): who was there before may be
+  /// another now, and nothing that was learned of the nodes holds for the next line.
+  void note_away() { was_away_ = true; }
+  bool was_away() const { return was_away_; }
+
   /// When listen() has something to do although nothing arrives from outside.
   TimePoint next_event() const { return network_->next_event(); }
 
@@ -156,6 +161,7 @@ class Session {
   TimePoint received_at_{};
   std::vector<const Stretch*> stretches_;
   TimePoint told_waiting_{};
+  bool was_away_ = false;
 };
 
 }  // namespace servoctl::session

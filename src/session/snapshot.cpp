@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "canopen/sdo_abort.hpp"
+#include "session/bus_return.hpp"
 #include "session/identify.hpp"
 #include "session/no_register.hpp"
 
@@ -77,6 +78,18 @@ std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Prof
     out.push_back(std::move(snapshot));
   }
   return out;
+}
+
+std::vector<Result<Snapshot>> take_snapshots_patiently(Session& session, const drive::Profile& profile,
+                                                       std::span<const std::uint8_t> nodes,
+                                                       const SettingFilter& wanted) {
+  BusReturn bus(session, BusReturn::to_people(session));
+  for (;;) {
+    auto out = take_snapshots(session, profile, nodes, wanted);
+    const auto lost = std::find_if(out.begin(), out.end(),
+                                   [](const auto& one) { return !one && one.error().code == Errc::bus; });
+    if (lost == out.end() || !bus.wait(lost->error(), session.now() + BusReturn::kPatience)) return out;
+  }
 }
 
 Result<std::vector<SnapshotEntry>> read_objects(Session& session, std::uint8_t node,

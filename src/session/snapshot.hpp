@@ -34,6 +34,11 @@ using SettingFilter = std::function<bool(const drive::DriveSetting&)>;
 std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Profile& profile,
                                              std::span<const std::uint8_t> nodes,
                                              const SettingFilter& wanted);
+/// The same, with patience for a bus that is lost meanwhile (BusReturn): once it is back all is read anew,
+/// because a drive may have restarted, or been exchanged, behind it.
+std::vector<Result<Snapshot>> take_snapshots_patiently(Session& session, const drive::Profile& profile,
+                                                       std::span<const std::uint8_t> nodes,
+                                                       const SettingFilter& wanted);
 
 /// Reads these objects of one node; a refused one is left out, with the reason.
 Result<std::vector<SnapshotEntry>> read_objects(Session& session, std::uint8_t node,

@@ -1,9 +1,5 @@
 #include "traffic/bus_picture.hpp"
 
-#include <fmt/format.h>
-#include <numeric>
-
-#include "base/text.hpp"
 #include "canopen/cob_id.hpp"
 
 namespace servoctl::traffic {
@@ -11,7 +7,7 @@ namespace servoctl::traffic {
 void BusPicture::add(const can::Frame& frame, TimePoint time) {
   if (frame.error) {
     if (const auto error = can::parse_wire_error(frame)) {
-      ++errors_[static_cast<std::size_t>(*error)];
+      errors_.add(*error);
       while_sending_ += can::while_sending(frame);
       if (const auto wires = can::transceiver_text(frame); !wires.empty()) wires_ = wires;
     }
@@ -25,19 +21,6 @@ void BusPicture::add(const can::Frame& frame, TimePoint time) {
   const auto first = static_cast<std::uint32_t>(canopen::kErrorControl);
   if (!frame.extended && !frame.remote && frame.id > first && frame.id <= first + canopen::kLastNode)
     nodes_.insert(static_cast<std::uint8_t>(frame.id - first));
-}
-
-std::size_t BusPicture::damage() const {
-  return std::accumulate(errors_.begin(), errors_.end(), std::size_t{0}) - unacknowledged() -
-         errors(can::WireError::overload);
-}
-
-std::string BusPicture::damage_text() const {
-  std::string out;
-  for (std::size_t i = 0; i < errors_.size(); ++i)
-    if (errors_[i] > 0)
-      append(out, fmt::format("{} × {}", errors_[i], can::text(static_cast<can::WireError>(i))), ", ");
-  return out;
 }
 
 }  // namespace servoctl::traffic

@@ -30,14 +30,12 @@ class BusPicture {
   std::size_t extended() const { return extended_; }  ///< Of them with a 29-bit identifier: not of CANopen.
   const std::set<std::uint8_t>& nodes() const { return nodes_; }  ///< That told that they live.
 
-  std::size_t errors(can::WireError error) const { return errors_[static_cast<std::size_t>(error)]; }
-  /// Of any kind but a missing acknowledge.
-  std::size_t damage() const;
+  std::size_t errors(can::WireError error) const { return errors_.count(error); }
+  std::size_t damage() const { return errors_.damage(); }
   std::size_t unacknowledged() const { return errors(can::WireError::acknowledge); }
   std::size_t while_sending() const { return while_sending_; }
   const std::string& wires() const { return wires_; }  ///< What the transceiver said of them; empty: nothing.
-  /// `12 stuff errors, 3 form errors`
-  std::string damage_text() const;
+  std::string damage_text() const { return errors_.text(); }
 
   std::size_t reports(can::ControllerReport report) const {
     return reports_[static_cast<std::size_t>(report)];
@@ -53,7 +51,7 @@ class BusPicture {
   std::size_t frames_ = 0;
   std::size_t extended_ = 0;
   std::size_t while_sending_ = 0;
-  std::array<std::size_t, can::kWireErrors> errors_{};
+  can::WireErrors errors_;
   std::array<std::size_t, 7> reports_{};
   std::set<std::uint8_t> nodes_;
   std::string wires_;

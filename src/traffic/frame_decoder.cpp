@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "can/controller_report.hpp"
+#include "can/error_frame.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/error_control.hpp"
 #include "canopen/lss.hpp"
@@ -56,8 +57,11 @@ const DecodedFrame& FrameDecoder::decode(const can::Frame& frame) {
   out_.objects.clear();
   if (frame.error) {
     const auto report = can::parse_report(frame);
+    const auto error = can::parse_wire_error(frame);
     out_.service = "controller";
-    out_.text = word(report ? can::text(*report) : "error frame, or report of the controller");
+    out_.text = word(report  ? can::text(*report)
+                     : error ? can::text(*error)
+                             : "error frame, or report of the controller");
   } else {
     decode_service(frame);
   }

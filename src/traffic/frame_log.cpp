@@ -102,7 +102,8 @@ void FrameLog::remark(Duration time, std::string_view service, std::optional<std
                       std::string_view text, std::string_view event) {
   if (!filter_.services.empty() && service != "alarm") return;
   if (view_ != nullptr)
-    return view_->remark(fmt::format("{:.3f} s, node {}: {}", seconds(time), node.value_or(0), text));
+    return view_->remark(node ? fmt::format("{:.3f} s, node {}: {}", seconds(time), *node, text)
+                              : fmt::format("{:.3f} s: {}", seconds(time), text));
   if (writer_.wants_records()) {
     return writer_.add_record([&](report::JsonWriter& json) {
       json.member("time", seconds(time));

@@ -11,11 +11,7 @@ namespace {
 /// How late what was gathered is shown, and an end by --for noticed, on a bus that is never silent.
 constexpr Duration kSlice = std::chrono::milliseconds(50);
 
-}  // namespace
-
-Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener) {
-  const session::Stretch stretch(session, length ? session.now() + *length : kNever);
-  const auto end = stretch.end();
+Result<void> listen_until(session::Session& session, TimePoint end, const Listener& listener) {
   auto shown = session.now();
   for (;;) {
     const auto due = listener.next ? listener.next() : kNever;
@@ -39,6 +35,19 @@ Result<void> listen(session::Session& session, std::optional<Duration> length, c
   }
   if (listener.on_pause) listener.on_pause();
   return {};
+}
+
+}  // namespace
+
+Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener) {
+  const session::Stretch stretch(session, length ? session.now() + *length : kNever);
+  session::BusReturn bus(session, listener.on_bus);
+  for (;;) {
+    auto ended = listen_until(session, stretch.end(), listener);
+    const bool lost = !ended && ended.error().code == Errc::bus;
+    if (!lost || !listener.on_bus) return ended;
+    if (auto back = bus.wait(ended.error(), stretch.end()); !back) return back;
+  }
 }
 
 }  // namespace servoctl::traffic

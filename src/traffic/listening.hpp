@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "session/session.hpp"
+#include "session/bus_return.hpp"
 
 /// What commands that listen to the bus have in common.
 namespace servoctl::traffic {
@@ -19,11 +19,14 @@ struct Listener {
   /// Called when `next` (asked each time) has come.
   std::function<Result<void>(TimePoint now)> on_time = {};
   std::function<TimePoint()> next = {};
+  /// Where it is set a lost bus is waited for (session::BusReturn), until `length` is over, and this is told.
+  session::BusReturn::Tell on_bus = {};
   /// Asked after each pause: whether it is over, as after Ctrl-C.
   std::function<bool()> is_over = {};
 };
 
-/// Listens until `length` is over or Ctrl-C comes, which is no error.
+/// Listens until `length` is over or Ctrl-C comes, which is no error. Errc::bus when the bus is lost and is
+/// not waited for, or did not come back.
 Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener);
 
 }  // namespace servoctl::traffic
