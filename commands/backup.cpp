@@ -146,7 +146,8 @@ const Command kBackup{
         "Saves parameters and writable objects, one per line; several nodes are read at the same time into a "
         "folder, as node-N.json. A file that is there and no backup is replaced only after a question. What is "
         "not a setting (commands, readings, targets) or is refused by the drive is listed with the reason. A "
-        "file is written whole or not at all. JSON has identity and checksum: keep that one. A DCF (CiA 306) is "
+        "file is written whole or not at all; where the bus is lost meanwhile it is waited for, 10 s at most, and all is "
+        "read anew. JSON has identity and checksum: keep that one. A DCF (CiA 306) is "
         "for other tools, a table for a spreadsheet, a batch for `run`. `restore`, `diff` and `verify` read all "
         "of them.",
     .parameters = kBackupParameters,

@@ -191,8 +191,8 @@ const Command kMonitor{
         "heartbeat stops. It sends nothing, except with --ask: then it first reads the PDO mapping of the "
         "nodes given by -n. Otherwise PDOs are decoded by a mapping seen on the bus meanwhile, or by the "
         "family's (-d) factory mapping. With --table a terminal shows one row for each CAN-ID, with its number of "
-        "frames, their mean period in ms, and what the last one means (keys: space pauses, s sorts, q quits). At the end (--for, or Ctrl-C) it shows the number of frames, and the "
-        "bus load if the bitrate is known from the interface or --bitrate. `-o jsonl` gives one document per "
+        "frames, their mean period in ms, and what the last one means (keys: space pauses, s sorts, q quits). A bus that is lost is waited for and told by an ALARM, its return too. At the end (--for, or Ctrl-C) it shows "
+        "the number of frames, errors on the wire as far as the driver tells them, and the bus load if the bitrate is known from the interface or --bitrate. `-o jsonl` gives one document per "
         "frame.",
     .parameters = kMonitorParameters,
     .examples = kMonitorExamples,

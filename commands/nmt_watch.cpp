@@ -272,7 +272,7 @@ const Command kNmtWatch{
     .summary = "Watch whether nodes are alive: heartbeat or node guarding",
     .details =
         "Reports boot-ups, state changes, emergencies, and nodes lost or back, as they happen; at the end "
-        "(--for, or Ctrl-C) a summary of each node. A node is lost if it was silent for three heartbeat "
+        "(--for, or Ctrl-C) a summary of each node. A bus that is lost is waited for until then. A node is lost if it was silent for three heartbeat "
         "periods (at least 100 ms more than one), or with --guard did not answer within its life time. "
         "Emergencies are recognised by the COB-ID in 1014h, which is read first, and by 080h + node-ID; if "
         "the node did not answer, or with --guard, by the latter only. Guarding requests start the drive's "

@@ -207,7 +207,7 @@ const Command kWatch{
         "On a terminal a table that is updated in place, with a small plot of each value (keys: space pauses, s "
         "sorts, q quits); elsewhere, and with --changes, one line per node at each --every; until --for is over "
         "or Ctrl-C. Values in a TPDO are taken from "
-        "it; the rest is read by SDO. At the end it shows the number of values of each object, the minimum, "
+        "it; the rest is read by SDO. A bus that is lost is waited for until the end. Then it shows the number of values of each object, the minimum, "
         "mean and maximum; --plot plots them. `-o jsonl` gives one document per sample. A drive that no "
         "longer answers at the end sets the exit code.",
     .parameters = kWatchParameters,

@@ -199,7 +199,7 @@ class Shell {
   Result<void> prepare_nodes(Run& run);
   static Result<void> hold_serials(Run& run);
   void tell_trace_failure(Run& run);
-  bool tell_lost_bus(Run& run);
+  bool tell_lost_bus(Run& run, bool met);
   void hear_second_node(const Run& run);
   void tell_second_node(Run& run);
   /// Lines about nodes that were written to before a second one of their number was noticed; each once.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "base/calendar.hpp"
 #include "base/text.hpp"
@@ -50,6 +51,28 @@ std::string lasting_name(const std::string& drive) {
 
 tl::unexpected<Error> needs_family(const command::Command& command, std::string hint) {
   return fail(Errc::usage, fmt::format("'{}' needs the drive family", command.path), std::move(hint));
+}
+
+/// The families of the nodes of a line, in the order they come.
+using Cast = std::vector<std::pair<std::string, std::vector<std::uint8_t>>>;
+
+void add_to(Cast& cast, const std::string& family, std::uint8_t node) {
+  auto known = std::find_if(cast.begin(), cast.end(), [&](const auto& one) { return one.first == family; });
+  if (known == cast.end()) known = cast.insert(cast.end(), {family, {}});
+  known->second.push_back(node);
+}
+
+tl::unexpected<Error> several_families(const Cast& cast) {
+  std::string lines;
+  for (const auto& [family, nodes] : cast)
+    append(lines, fmt::format("-n {} -d {}", fmt::join(nodes, ","), family), "; ");
+  const auto& [one, here] = cast[0];
+  const auto& [other, there] = cast[1];
+  return fail(
+      Errc::usage,
+      fmt::format("node {} is taken for {}, node {} for {}", here.front(), one, there.front(), other),
+      fmt::format("a line for each family, if the nameplates agree: {}; or a cabinet file (`cabinet init`)",
+                  lines));
 }
 
 }  // namespace
@@ -162,17 +185,17 @@ Result<void> Shell::find_family(Run& run, bool changes) {
     return needs_family(*run.command, "registers do not say what a device is: " + no_family_hint());
   if (nodes->front() == 0) nodes = session::nodes_present(**opened);
   if (!nodes) return fail(nodes.error());
-  std::string family;
+  Cast cast;
   for (const auto node : *nodes) {
-    const auto one = family_of(run, **opened, node, changes);
-    if (!one) return fail(one.error());
-    if (!family.empty() && *one != family)
-      return fail(Errc::usage,
-                  fmt::format("node {} is taken for {}, node {} for {}", nodes->front(), family, node, *one),
-                  "name the nodes of one family in one line, or write a cabinet file (`cabinet init`)");
-    family = *one;
+    // That there are several families is told before what is to be changed of the first one.
+    const auto family = family_of(run, **opened, node, changes && nodes->size() == 1);
+    if (!family) return fail(family.error());
+    add_to(cast, *family, node);
   }
-  run.settings.drive = family;
+  if (cast.size() > 1) return several_families(cast);
+  for (const auto node : *nodes)
+    if (const auto sure = family_of(run, **opened, node, changes); !sure) return fail(sure.error());
+  run.settings.drive = cast.front().first;
   run.family_found = true;
   run.family_guessed = families_.at(key_of(**opened, nodes->front())).guessed;
   return {};

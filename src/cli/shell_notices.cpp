@@ -65,9 +65,9 @@ void Shell::hear_second_node(const Run& run) {
   (void)session::settle_duplicates(*session, run.context.nodes, least);
 }
 
-/// Whether the bus of the line was lost. It is told where the line asked for something that it can do
-/// without.
-bool Shell::tell_lost_bus(Run& run) {
+/// Whether the bus of the line was lost. It is an error of the line where that `met` it, also in what it can
+/// do without; one that was done before goes on.
+bool Shell::tell_lost_bus(Run& run, bool met) {
   auto& errors = run.context.errors;
   auto* session = run.context.session;
   const auto of_bus = [](const Error& error) { return error.code == Errc::bus; };
@@ -75,7 +75,11 @@ bool Shell::tell_lost_bus(Run& run) {
   if (std::any_of(errors.begin(), errors.end(), of_bus)) return of_bus(errors.front());
   const auto heard = session->can() == nullptr ? Result<void>() : session->listen();
   if (heard || !of_bus(heard.error())) return false;
-  errors.push_back(heard.error());
+  if (met)
+    errors.push_back(heard.error());
+  else
+    run.context.notices.push_back(
+        fmt::format("{}, when what this line does was done", heard.error().message));
   return true;
 }
 

@@ -36,7 +36,11 @@ Session::Session(std::unique_ptr<can::Bus> bus, std::string url, Options options
     : Session(std::make_unique<CanNetwork>(std::move(bus), url), url, std::move(options)) {}
 
 std::vector<Result<Bytes>> Session::transfer(std::span<const SdoRequest> requests) {
-  return TransferRun(*this, requests).run();
+  auto out = TransferRun(*this, requests).run();
+  met_loss_ = met_loss_ || std::any_of(out.begin(), out.end(), [](const auto& result) {
+                return !result && result.error().code == Errc::bus;
+              });
+  return out;
 }
 
 Result<Bytes> Session::upload(std::uint8_t node, ObjectAddress object) {
@@ -72,6 +76,7 @@ Result<bool> Session::step_network(TimePoint deadline) {
       deadline = std::min(deadline, now() + free);
   auto stepped = network_->step(deadline);
   received_at_ = network_->stepped_at();
+  met_loss_ = met_loss_ || (!stepped && stepped.error().code == Errc::bus);
   if (interleave_ != nullptr && stepped && *stepped) interleave_->taken_in_ |= interleave_->in_job();
   if (options_.waiting && received_at_ >= told_waiting_ + kTelling) tell_waiting();
   return stepped;

@@ -134,6 +134,8 @@ class Session {
   /// another now, and nothing that was learned of the nodes holds for the next line.
   void note_away() { was_away_ = true; }
   bool was_away() const { return was_away_; }
+  /// Whether a transfer or a wait ended with the loss of the bus, so that something may be missing.
+  bool met_loss() const { return met_loss_; }
 
   /// When listen() has something to do although nothing arrives from outside.
   TimePoint next_event() const { return network_->next_event(); }
@@ -162,6 +164,7 @@ class Session {
   std::vector<const Stretch*> stretches_;
   TimePoint told_waiting_{};
   bool was_away_ = false;
+  bool met_loss_ = false;
 };
 
 }  // namespace servoctl::session
