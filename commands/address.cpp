@@ -120,7 +120,7 @@ std::string question_address(const Context& context, std::span<const AddressChan
       out += fmt::format("; in the cabinet file {} is the place of axis {}", change.to, other->name);
   if (follower.follows()) {
     out = out.empty() ? "Every drive has it for its next start" : fmt::format("Re-address {}", out);
-    out += "; " + settings::switch_text(follower, changes.front());
+    out += "; " + settings::switch_text(follower);
     if (const auto who = who_receives(follower.link->name()); !who.empty()) out += "; " + who;
     return out + ".";
   }
@@ -146,22 +146,14 @@ void tell_power(Context& context, const AddressChange& change, const AddressOutc
       change.node, change.to, change.to));
 }
 
-void tell_next_bitrate(Context& context, const settings::BitrateSwitch& follower) {
-  if (follower.link != nullptr && !follower.why_not.empty())
-    context.notices.push_back(fmt::format("{} is left alone: {}", follower.link->name(), follower.why_not));
-  for (const auto& line : settings::bitrate_steps(context.session->url(), follower.bitrate))
-    context.notices.push_back(line);
-}
-
 /// How the interface follows its drives to another bitrate, where one is wished.
 Result<settings::BitrateSwitch> follower_of(Context& context, std::span<const AddressChange> changes,
-                                            const settings::AddressWish& wish,
+                                            std::optional<std::uint32_t> bitrate,
                                             const settings::AddressOptions& options) {
-  if (!wish.bitrate) return settings::BitrateSwitch{};
+  if (!bitrate) return settings::BitrateSwitch{};
   const auto name = session::canonical_url(context.session->url());
   auto link = name.find(':') == std::string::npos ? can::open_link(name) : nullptr;
-  auto out =
-      settings::plan_switch(context, link ? std::move(*link) : nullptr, changes, *wish.bitrate, options);
+  auto out = settings::plan_switch(context, link ? std::move(*link) : nullptr, changes, *bitrate, options);
   if (!out || !out->follows()) return out;
   if (const auto held = hold_energised(context, name); !held) return fail(held.error());
   return out;
@@ -188,7 +180,7 @@ Result<Value> change_addresses(Context& context, std::span<const AddressChange> 
     tell_axes(context, changes[i], outcomes[i]);
     awaits_bitrate = awaits_bitrate || (outcomes[i].end == AddressEnd::awaits_restart && changes[i].bitrate);
   }
-  if (awaits_bitrate) tell_next_bitrate(context, follower);
+  if (awaits_bitrate) settings::tell_bitrate_by_hand(context, follower, changes);
   return Value(settings::address_table(changes, outcomes));
 }
 
@@ -203,6 +195,10 @@ Result<Value> run_plan(Context& context, const Arguments& arguments,
   all.hold = [&](std::uint8_t node, const drive::Profile& family) {
     return context.hold_family(std::vector{node}, &family, true);
   };
+  all.follower = [&](std::span<const AddressChange> changes, std::uint32_t bitrate) {
+    return follower_of(context, changes, bitrate, options);
+  };
+  all.beside = [](const settings::BitrateSwitch& follower) { return who_receives(follower.link->name()); };
   all.moved = [&](const settings::AddressRow& row, std::optional<std::uint32_t> serial) {
     tell_moved_axis(context, row.node, row.to, serial);
   };
@@ -234,13 +230,11 @@ Result<Value> run_address(Context& context, const Arguments& arguments) {
     if (change->moves()) context.free_nodes.push_back(change->to);
     changes.push_back(std::move(*change));
   }
-  if (const auto free = settings::refuse_taken(*context.session, context.free_nodes); !free)
-    return fail(free.error());
-  auto follower = follower_of(context, changes, *wish, *options);
+  if (const auto free = settings::refuse_taken(context, context.free_nodes); !free) return fail(free.error());
+  auto follower = follower_of(context, changes, wish->bitrate, *options);
   if (!follower) return fail(follower.error());
   if (context.dry_run) {
-    if (follower->follows())
-      context.notices.push_back("then " + settings::switch_commands(*follower, changes.front()));
+    if (follower->follows()) context.notices.push_back("then " + settings::switch_commands(*follower));
     return settings::planned_address(context, changes, options->unlock);
   }
   const bool idle = std::ranges::all_of(changes, &AddressChange::idle) && !follower->follows();

@@ -224,7 +224,7 @@ Result<Value> assign(Context& context, const ScanWish& wish, std::vector<session
   const auto nodes = nodes_from(*wish.first, todo.size());
   if (!nodes) return fail(nodes.error());
   if (!context.errors.empty() || todo.empty()) return Value(slaves_table(context, all, {}));
-  if (const auto free = settings::refuse_taken(*context.session, *nodes); !free) return fail(free.error());
+  if (const auto free = settings::refuse_taken(context, *nodes); !free) return fail(free.error());
   if (context.dry_run) return planned_lss_scan(todo, *nodes, keep);
   if (const auto sure = context.confirm(question_lss_scan(todo, *nodes)); !sure) return fail(sure.error());
   const auto given = give(context, todo, *nodes, keep);

@@ -144,7 +144,8 @@ report::Record lss_bitrate_record(const LssBitrateChange& change,
   out.push_back({"slaves", outcome.slaves});
   out.push_back({"bitrate", change.bitrate ? Value(*change.bitrate) : Value()});
   out.push_back({"kept", change.keep});
-  out.push_back({"active_after_ms", change.delay_ms ? Value(*change.delay_ms) : Value()});
+  out.push_back({"active_after_ms", change.delay_ms ? Value(*change.delay_ms) : Value(),
+                 report::Show::everywhere, "active after (ms)"});
   return out;
 }
 

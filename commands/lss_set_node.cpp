@@ -40,15 +40,21 @@ std::string node_text(std::uint8_t node) {
   return node == kUnconfigured ? std::string("no node-ID") : fmt::format("node-ID {}", node);
 }
 
-std::string question_lss_set_node(const session::LssSlave& slave, const settings::LssNodeChange& change) {
+std::string question_lss_set_node(session::Session& session, const session::LssSlave& slave,
+                                  const settings::LssNodeChange& change) {
+  if (settings::has_lss_node(slave, change))
+    return fmt::format("Store {} in the LSS slave with {}? It has it already.", node_text(change.to),
+                       to_string(slave.address));
   auto out = fmt::format("Give {} to the LSS slave with {}?", node_text(change.to), to_string(slave.address));
   if (slave.is_unconfigured()) return out + " It has none, and starts with it.";
   if (!slave.node) return out + " It does not tell which it has; the new one holds when it starts again.";
-  return out +
-         fmt::format(
-             " It is node {} now; its communication is reset (NMT): unstored PDOs, COB-IDs and heartbeats "
-             "are lost, and a moving axis may lose its control.",
-             *slave.node);
+  out += fmt::format(
+      " It is node {} now; its communication is reset (NMT): unstored PDOs, COB-IDs and heartbeats "
+      "are lost, and a moving axis may lose its control.",
+      *slave.node);
+  if (const auto by = settings::shared_lss_node(session, slave); !by.empty())
+    out += fmt::format(" Another drive has this node-ID too ({}): it hears the reset as well.", by);
+  return out;
 }
 
 Value node_value(std::optional<std::uint8_t> node) {
@@ -69,15 +75,18 @@ Result<Value> run_lss_set_node(Context& context, const Arguments& arguments) {
   const settings::LssNodeChange change{choice->address, *to, arguments.has("--keep")};
   if (context.dry_run) {
     context.notices.push_back(
-        "a slave that has a node-ID already gets an NMT reset of its communication behind these frames");
+        "a slave that has another node-ID gets an NMT reset of its communication behind these frames");
     return planned_lss_set_node(*choice, change);
   }
-  const auto slave = settings::look_at_lss_slave(*context.session, change);
+  const auto slave = settings::look_at_lss_slave(context, change);
   if (!slave) return fail(slave.error());
-  context.free_nodes = {change.to};
-  auto agreed = context.confirm(question_lss_set_node(*slave, change));
+  const bool stays = settings::has_lss_node(*slave, change);
+  const bool idle = stays && !change.keep;
+  if (!stays) context.free_nodes = {change.to};
+  auto agreed =
+      idle ? Result<void>() : context.confirm(question_lss_set_node(*context.session, *slave, change));
   // It may have been enabled meanwhile.
-  if (agreed && slave->node && !slave->is_unconfigured())
+  if (agreed && !idle && slave->node && !slave->is_unconfigured())
     agreed = settings::refuse_energised(*context.session, *slave->node, "its address");
   if (!agreed) return fail(agreed.error());
   const auto outcome = settings::give_lss_node(context, *slave, change);
@@ -87,7 +96,7 @@ Result<Value> run_lss_set_node(Context& context, const Arguments& arguments) {
   out.push_back({"new_node", node_value(change.to), report::Show::everywhere, "new"});
   out.push_back({"result", outcome.result});
   out.push_back({"kept", outcome.kept ? Value(*outcome.kept) : Value()});
-  if (outcome.done && !change.keep)
+  if (outcome.done && !change.keep && !stays)
     context.notices.push_back(
         "it is not stored: after power-off the slave has what it stored last; `lss store`, or --keep, keeps it");
   return Value(std::move(out));

@@ -62,7 +62,7 @@ Result<void> put_in_place(const show::Desk& desk, const Station& station, const 
     const auto change = settings::plan_address(at, drive.at, {.node = node, .serial = drive.serial});
     if (!change) return fail(change.error());
     const std::uint8_t to[] = {node};
-    if (const auto free = settings::refuse_taken(*at.session, to); !free) return free;
+    if (const auto free = settings::refuse_taken(at, to); !free) return free;
     const auto outcome = settings::change_address(at, *change, {.unlock = unlock});
     if (outcome.error) return fail(*outcome.error);
     if (outcome.end == AddressEnd::moved) return {};

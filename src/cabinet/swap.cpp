@@ -124,7 +124,7 @@ class Swapping {
     const auto change = settings::plan_address(desk_, at_, {.node = axis_.node, .serial = identity_.serial});
     if (!change) return fail(change.error());
     const std::uint8_t to[] = {axis_.node};
-    if (const auto free = settings::refuse_taken(*desk_.session, to); !free) return free;
+    if (const auto free = settings::refuse_taken(desk_, to); !free) return free;
     if (desk_.dry_run) {
       auto frames = settings::planned_address(desk_, std::span(&*change, 1), options_->address.unlock);
       if (!frames) return fail(frames.error());

@@ -20,6 +20,14 @@ bool writes_heartbeat_time(const can::Frame& frame) {
          sdo_object(frame) == kHeartbeatTime;
 }
 
+/// What answers it is no heartbeat, after which another one comes.
+bool asks_for_state(const can::Frame& frame) {
+  return frame.remote && !frame.extended && !frame.error && frame.id > kErrorControl &&
+         frame.id <= kErrorControl + kLastNode;
+}
+
+std::uint8_t watched_node_of(const can::Frame& frame) { return static_cast<std::uint8_t>(frame.id & 0x7FU); }
+
 }  // namespace
 
 TimePoint NodeWatch::Node::deadline() const {
@@ -33,11 +41,12 @@ void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
     on_error_control(*message, now);
     update_deadline();
   }
-  on_sent(frame);  // Another master's.
+  if (writes_heartbeat_time(frame)) forget_period(watched_node_of(frame));  // Another master's.
 }
 
 void NodeWatch::on_sent(const can::Frame& frame) {
-  if (writes_heartbeat_time(frame)) forget_period(static_cast<std::uint8_t>(frame.id & 0x7FU));
+  const bool asks_once = asks_for_state(frame) && !nodes_[watched_node_of(frame)].guarded;
+  if (asks_once || writes_heartbeat_time(frame)) forget_period(watched_node_of(frame));
 }
 
 void NodeWatch::forget_period(std::uint8_t node) {

@@ -23,10 +23,19 @@ std::size_t numbers_given(const Arguments& arguments) {
 
 bool names_node(const Context& context) { return context.nodes.size() == 1 && context.nodes.front() != 0; }
 
-/// What a node says of itself; one that keeps back a part cannot be selected by it.
+/// What a node says of itself; one that keeps back a part cannot be selected by it, nor one of two.
 Result<LssAddress> address_of_node(Context& context, std::uint8_t node) {
   const auto identity = session::read_identity(*context.session, node);
   if (!identity) return fail(identity.error());
+  const std::uint8_t here[] = {node};
+  if (const auto heard = session::settle_duplicates(*context.session, here, session::kBeforeMotion); !heard)
+    return fail(heard.error());
+  if (auto single = session::refuse_duplicate(*context.session, node); !single) {
+    single.error().hint =
+        "name the one that is meant by --vendor, --product, --revision and --serial: `lss scan --vendor V "
+        "--product P` shows the LSS slaves of a kind";
+    return fail(std::move(single.error()));
+  }
   const auto& i = *identity;
   if (i.vendor_id && i.product_code && i.revision && i.serial)
     return LssAddress{*i.vendor_id, *i.product_code, *i.revision, *i.serial};

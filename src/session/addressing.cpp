@@ -48,9 +48,16 @@ std::uint8_t sender_of(const can::Frame& frame) {
 
 constexpr std::string_view kItAnswers = "it answers";
 
-std::string_view what_it_sends(const can::Frame& frame) {
+/// `asked` by node guarding: an answer is no different from a heartbeat.
+std::string_view what_it_sends(const can::Frame& frame, bool asked) {
   const auto service = frame.id & ~0x7FU;
-  if (service == canopen::kErrorControl) return "it sends heartbeats";
+  if (service == canopen::kErrorControl) {
+    if (!asked) return "it sends heartbeats";
+    const auto message = canopen::parse_error_control(frame);
+    return message && message->state == canopen::NmtState::stopped
+               ? "it says that it is stopped (NMT)"
+               : "it answers node guarding, or sends heartbeats";
+  }
   return service == canopen::kSdoAnswer ? kItAnswers : "it sends PDOs or emergencies";
 }
 
@@ -62,15 +69,20 @@ bool has_answered(const Result<Bytes>& answer) {
 
 Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
                                                          std::span<const std::uint8_t> nodes,
-                                                         Duration listening) {
+                                                         const AddressLook& look) {
   std::map<std::uint8_t, std::string> out;
   auto* can = session.can();
   if (can == nullptr) return out;
   const std::set<std::uint8_t> wanted(nodes.begin(), nodes.end());
+  bool asked = false;
   const Hearing hearing(session, [&](const can::Frame& frame, TimePoint) {
-    if (const auto node = sender_of(frame); wanted.count(node) > 0) out.emplace(node, what_it_sends(frame));
+    if (const auto node = sender_of(frame); wanted.count(node) > 0)
+      out.emplace(node, what_it_sends(frame, asked));
   });
-  const auto until = session.now() + listening;
+  const auto own = can->heartbeat_node();
+  if (own && wanted.count(*own) > 0) out[*own] = "it carries servoctl's own heartbeat";
+  const auto all = [&] { return out.size() == wanted.size(); };
+  const auto until = session.now() + look.listening;
   std::vector<SdoRequest> questions;
   for (const auto node : wanted) questions.push_back({.node = node, .object = objects::kDeviceType});
   {
@@ -82,15 +94,22 @@ Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
         return fail(found[i].error());
     }
   }
-  const auto waited = session.wait([&] { return out.size() == wanted.size(); }, until);
-  if (!waited) return fail(waited.error());
-  const auto own = can->heartbeat_node();
-  if (own && wanted.count(*own) > 0) out[*own] = "it carries servoctl's own heartbeat";
+  if (const auto waited = session.wait(all, until); !waited) return fail(waited.error());
+  if (all() || !look.guards || !guards_nodes(session)) return out;
+  // A stopped node has no SDO. One that another master guards was heard by now.
+  asked = true;
+  for (const auto node : wanted)
+    if (out.count(node) == 0)
+      if (const auto sent = session.network().ask_state(node); !sent) return fail(sent.error());
+  if (const auto waited = session.wait(all, session.now() + kProbe); !waited) return fail(waited.error());
   return out;
 }
 
-Result<std::vector<std::uint8_t>> nodes_beside(Session& session, std::span<const std::uint8_t> nodes) {
-  const auto used = nodes_in_use(session, canopen::every_node_id());
+bool guards_nodes(Session& session) { return session.network().carries(LifeSign::Kind::guarding); }
+
+Result<std::vector<std::uint8_t>> nodes_beside(Session& session, std::span<const std::uint8_t> nodes,
+                                               const AddressLook& look) {
+  const auto used = nodes_in_use(session, canopen::every_node_id(), look);
   if (!used) return fail(used.error());
   const auto* can = session.can();
   std::vector<std::uint8_t> out;

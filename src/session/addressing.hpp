@@ -15,14 +15,27 @@ namespace servoctl::session {
 /// heartbeats send one at least so often.
 inline constexpr Duration kAddressListening = std::chrono::milliseconds(1500);
 
-/// Which of these node-IDs somebody uses, and what shows it: `it answers`, `it sends heartbeats`. All are asked once at the same time, and the bus is
-/// listened to for `listening`. Errors of the bus. On a network without node-IDs of its own nobody uses any.
+/// How it is found out who uses a node-ID.
+struct AddressLook {
+  Duration listening = kAddressListening;
+  /// Those that neither answer nor are heard are asked by node guarding, which reaches one that is stopped
+  /// (NMT): a node that guards its master's life begins to do so. Not in a dry run.
+  bool guards = true;
+};
+
+/// Which of these node-IDs somebody uses, and what shows it: `it answers`, `it sends heartbeats`. All are
+/// asked once at the same time, and the bus is listened to. Errors of the bus. On a network without node-IDs
+/// of its own nobody uses any.
 Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
                                                          std::span<const std::uint8_t> nodes,
-                                                         Duration listening = kAddressListening);
+                                                         const AddressLook& look = {});
+
+/// Whether nodes can be asked by node guarding: not where the bus carries no remote frames.
+bool guards_nodes(Session& session);
 
 /// Those that use the bus beside `nodes`, as nodes_in_use() finds them; servoctl's own heartbeat is nobody.
-Result<std::vector<std::uint8_t>> nodes_beside(Session& session, std::span<const std::uint8_t> nodes);
+Result<std::vector<std::uint8_t>> nodes_beside(Session& session, std::span<const std::uint8_t> nodes,
+                                               const AddressLook& look = {});
 
 /// Sends the node the NMT command that puts a new address in force; nothing for a power cycle. What was heard
 /// of it is forgotten: another may answer under its number from now on.

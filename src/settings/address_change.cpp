@@ -1,14 +1,19 @@
 #include "settings/address_change.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <utility>
 
+#include "canopen/cob_id.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/node_list.hpp"
+#include "canopen/sdo_frame.hpp"
 #include "drive/bitrate.hpp"
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/can_network.hpp"
+#include "session/hearing.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
@@ -78,15 +83,38 @@ Result<void> hold_bitrate(show::Desk& desk, const AddressChange& change, const A
           *wish.bus_bitrate, change.node, *next)));
 }
 
-void add_restart(const AddressChange& change, report::Value& plan) {
-  auto* table = std::get_if<report::Table>(&plan.data());
-  if (table == nullptr || !change.restarts()) return;
-  table->json_only = false;
-  table->rows.push_back({change.node,
-                         "NMT",
-                         drive::name(change.restart),
-                         {},
-                         session::restart_frame(change.node, change.restart)});
+void add_restart(const AddressChange& change, report::Table& plan) {
+  if (change.idle() || !change.restarts()) return;
+  const auto node = change.told_at != 0 ? change.told_at : change.node;
+  plan.json_only = false;
+  plan.rows.push_back(
+      {node, "NMT", drive::name(change.restart), {}, session::restart_frame(node, change.restart)});
+}
+
+/// The messages to a drive, where it will be then.
+std::vector<session::PlannedMessage> messages_to(const AddressChange& change,
+                                                 const session::Rehearsal& rehearsal) {
+  auto out = rehearsal.messages();
+  if (change.told_at == 0) return out;
+  for (auto& message : out) {
+    message.node = change.told_at;
+    if (message.write) message.write->node = change.told_at;
+  }
+  return out;
+}
+
+bool is_shared(session::Session& session, std::uint8_t node) {
+  auto* can = session.can();
+  return can != nullptr && !can->duplicates().noticed(node).empty();
+}
+
+bool says_energised(const can::Frame& frame, std::uint8_t node) {
+  constexpr std::uint8_t kReadAnswer = 2;  // CiA 301, 7.2.4.3.6: initiate upload response.
+  if (frame.extended || frame.error || frame.remote || frame.size != 8) return false;
+  if (frame.id != canopen::kSdoAnswer + node || frame.data[0] >> 5U != kReadAnswer) return false;
+  if (canopen::sdo_object(frame) != objects::kStatusword) return false;
+  return drive::is_energised(
+      drive::decode_state(static_cast<std::uint16_t>(frame.data[4] | frame.data[5] << 8U)));
 }
 
 Result<void> rehearse(show::Desk& desk, const AddressChange& change, bool unlock,
@@ -139,13 +167,26 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
 }
 
 Result<void> refuse_energised(session::Session& session, std::uint8_t node, std::string_view what) {
+  bool energised = false;
+  const session::Hearing hearing(session, [&](const can::Frame& frame, TimePoint) {
+    energised = energised || says_energised(frame, node);
+  });
   const auto word = session.upload(node, objects::kStatusword);
-  if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
-  if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
-    return {};
-  return fail(
-      drive_error(Errc::refused, node, fmt::format("it is energised: {} cannot be changed now", what),
-                  fmt::format("`disable -n {}` de-energises it; make sure that the load is held", node)));
+  if (word)
+    energised =
+        energised || drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word))));
+  const bool shared = is_shared(session, node);
+  if (shared && !energised)
+    if (const auto waited = session.wait([&] { return energised; }, session.now() + session::kBeforeMotion);
+        !waited)
+      return fail(waited.error());
+  if (!energised) return word || word.error().code == Errc::sdo_abort ? Result<void>() : fail(word.error());
+  return fail(drive_error(
+      Errc::refused, node,
+      shared
+          ? fmt::format("two drives have this node-ID, and one is energised: {} cannot be changed now", what)
+          : fmt::format("it is energised: {} cannot be changed now", what),
+      fmt::format("`disable -n {}` de-energises it; make sure that the load is held", node)));
 }
 
 Result<void> refuse_energised_nodes(session::Session& session, std::string_view what) {
@@ -156,15 +197,25 @@ Result<void> refuse_energised_nodes(session::Session& session, std::string_view 
   return {};
 }
 
-Result<void> refuse_taken(session::Session& session, std::span<const std::uint8_t> nodes,
-                          Duration listening) {
+Result<void> refuse_taken(show::Desk& desk, std::span<const std::uint8_t> nodes, Duration listening) {
   if (nodes.empty()) return {};
-  const auto used = session::nodes_in_use(session, nodes, listening);
+  const auto used =
+      session::nodes_in_use(*desk.session, nodes, {.listening = listening, .guards = !desk.dry_run});
   if (!used) return fail(used.error());
-  if (used->empty()) return {};
+  if (used->empty()) {
+    tell_unguarded(desk);
+    return {};
+  }
   const auto& [node, how] = *used->begin();
   return fail(drive_error(Errc::refused, node, fmt::format("this node-ID is taken: {}", how),
                           "nothing was written; `scan` shows who is there"));
+}
+
+void tell_unguarded(show::Desk& desk) {
+  if (desk.dry_run || session::guards_nodes(*desk.session)) return;
+  auto text = fmt::format("{} carries no remote frames: nodes that are stopped (NMT) were not looked for",
+                          desk.session->url());
+  if (std::ranges::find(desk.notices, text) == desk.notices.end()) desk.notices.push_back(std::move(text));
 }
 
 std::string_view text_of(AddressEnd end) {
@@ -185,9 +236,10 @@ Result<report::Value> planned_address(show::Desk& desk, std::span<const AddressC
     const FamilyScope family(desk, change.profile);
     session::Rehearsal rehearsal;
     if (const auto done = rehearse(desk, change, unlock, rehearsal); !done) return fail(done.error());
-    auto part = show::planned_messages(desk, rehearsal.messages());
+    auto part = show::planned_messages(desk, messages_to(change, rehearsal));
+    auto* more = std::get_if<report::Table>(&part.data());
+    if (more != nullptr) add_restart(change, *more);
     auto* table = std::get_if<report::Table>(&out.data());
-    const auto* more = std::get_if<report::Table>(&part.data());
     if (table == nullptr || more == nullptr) {
       out = std::move(part);
       continue;
@@ -195,21 +247,21 @@ Result<report::Value> planned_address(show::Desk& desk, std::span<const AddressC
     table->json_only = table->json_only && more->json_only;
     table->rows.insert(table->rows.end(), more->rows.begin(), more->rows.end());
   }
-  for (const auto& change : changes) add_restart(change, out);
   return out;
 }
 
-std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t bitrate) {
+std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t bitrate,
+                                       const std::string& family) {
   auto name = session::canonical_url(bus_url);
   const bool is_serial = name.starts_with("slcan:");
   const bool is_kernels = name.find(':') == std::string::npos;
   std::vector<std::string> out;
-  if (is_kernels)
-    out.push_back(fmt::format(
-        "`address --bitrate {} -n all` restarts all drives and switches {} with them; by hand:", bitrate,
-        name));
-  else
+  if (!is_kernels)
     name = "can0";
+  else if (!family.empty())
+    out.push_back(fmt::format(
+        "`address --bitrate {} -n all -d {}` restarts all drives and switches {} with them; by hand:",
+        bitrate, family, name));
   out.push_back(
       "change all nodes of the bus before any of them restarts: one with another bitrate disturbs the rest");
   out.push_back("then switch all of them off");

@@ -29,6 +29,7 @@ struct AddressWish {
 struct AddressChange {
   std::uint8_t node = 0;
   std::uint8_t to = 0;                   ///< `node` where it stays.
+  std::uint8_t told_at = 0;              ///< For a plan: where it will be when it is written to; 0: `node`.
   std::optional<std::uint32_t> bitrate;  ///< What it has from its next start on, where one was wished.
   session::Identity identity;
   const drive::Profile* profile = nullptr;  ///< Of its family.
@@ -63,15 +64,20 @@ class FamilyScope {
 /// of its bus when it starts at its new node-ID; else as Session::upload().
 Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const AddressWish& wish);
 
-/// Errc::refused when the drive has power on its motor; else as Session::upload(). One that has no statusword
-/// has none. `what` would change under it: "its address".
+/// Errc::refused when the drive has power on its motor, and where two were noticed under this number, when
+/// either has; else as Session::upload(). One that has no statusword has none. `what` would change under it:
+/// "its address".
 Result<void> refuse_energised(session::Session& session, std::uint8_t node, std::string_view what);
 /// The same of every node that answers a scan(), for what changes the bus under all of them.
 Result<void> refuse_energised_nodes(session::Session& session, std::string_view what);
 
-/// Errc::refused, with what shows it, when somebody uses one of these node-IDs; as nodes_in_use().
-Result<void> refuse_taken(session::Session& session, std::span<const std::uint8_t> nodes,
+/// Errc::refused, with what shows it, when somebody uses one of these node-IDs; as nodes_in_use(). A notice
+/// where the bus cannot ask those that are stopped; a dry run does not.
+Result<void> refuse_taken(show::Desk& desk, std::span<const std::uint8_t> nodes,
                           Duration listening = session::kAddressListening);
+
+/// A notice, once, where those that are stopped cannot be asked whether they are there.
+void tell_unguarded(show::Desk& desk);
 
 /// How it ended.
 enum class AddressEnd : std::uint8_t {
@@ -106,10 +112,12 @@ AddressOutcome change_address(show::Desk& desk, const AddressChange& change, con
 /// Looks, as change_address() does, for a drive that was restarted since: `so_far` is what came of it before.
 AddressOutcome find_again(show::Desk& desk, const AddressChange& change, AddressOutcome so_far);
 
-/// The frames of that, as `--dry-run` shows them.
+/// The frames of that in their order, as `--dry-run` shows them.
 Result<report::Value> planned_address(show::Desk& desk, std::span<const AddressChange> changes, bool unlock);
 
-/// What somebody has to do by hand so that the new bitrate holds on this bus, a line each.
-std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t bitrate);
+/// What somebody has to do by hand so that the new bitrate holds on this bus, a line each. `family` is that
+/// of all drives; empty: they are of several, which no command line changes together.
+std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t bitrate,
+                                       const std::string& family);
 
 }  // namespace servoctl::settings

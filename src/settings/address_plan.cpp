@@ -180,19 +180,21 @@ std::optional<std::uint32_t> bitrate_of(std::span<const AddressRow> rows) {
   return row == rows.end() ? std::nullopt : row->bitrate;
 }
 
-std::string question_address_plan(std::span<const AddressRow> rows, std::size_t steps) {
+std::string question_address_plan(std::span<const AddressRow> rows, std::size_t steps,
+                                  const std::string& then) {
   const auto bitrate = bitrate_of(rows);
   if (!bitrate)
     return fmt::format("Re-address {} drives in {} steps? Each one is restarted.", rows.size(), steps);
   const auto speed = drive::bitrate_text(*bitrate);
   const auto changed =
       std::ranges::count_if(rows, [](const AddressRow& one) { return one.bitrate.has_value(); });
-  return steps == 0
-             ? fmt::format("Write a bitrate of {} to {} drives, for their next start?", speed, changed)
-             : fmt::format(
-                   "Re-address {} drives in {} steps, each restarted, and then write a bitrate of {} to {} of "
-                   "them, for their next start?",
-                   rows.size(), steps, speed, changed);
+  auto out = steps == 0
+                 ? fmt::format("Write a bitrate of {} to {} drives, for their next start?", speed, changed)
+                 : fmt::format(
+                       "Re-address {} drives in {} steps, each restarted, and then write a bitrate of {} to "
+                       "{} of them, for their next start?",
+                       rows.size(), steps, speed, changed);
+  return then.empty() ? out : fmt::format("{} If so, {}.", out, then);
 }
 
 }  // namespace servoctl::settings

@@ -31,8 +31,9 @@ Result<std::vector<AddressRow>> parse_address_plan(std::string_view csv, std::st
 /// The bitrate that drives of a plan are to have from their next start on; empty where it has none.
 std::optional<std::uint32_t> bitrate_of(std::span<const AddressRow> rows);
 
-/// What a plan is about to do, with so many steps left.
-std::string question_address_plan(std::span<const AddressRow> rows, std::size_t steps);
+/// What a plan is about to do, with so many steps left; `then` is what follows its bitrate, and may be empty.
+std::string question_address_plan(std::span<const AddressRow> rows, std::size_t steps,
+                                  const std::string& then);
 
 /// One drive moves.
 struct AddressStep {

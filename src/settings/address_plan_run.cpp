@@ -7,6 +7,8 @@
 #include "base/file_lock.hpp"
 #include "canopen/node_list.hpp"
 #include "drive/bitrate.hpp"
+#include "settings/address_plan_bitrate.hpp"
+#include "settings/address_plan_frames.hpp"
 #include "settings/address_resume.hpp"
 #include "settings/address_table.hpp"
 #include "show/identity.hpp"
@@ -33,7 +35,8 @@ class PlanRun {
         text_(text),
         file_(file),
         path_(address_journal_of(file)),
-        options_(&options) {}
+        options_(&options),
+        bitrate_(desk, options) {}
 
   Result<Value> run() {
     auto rows = parse_address_plan(text_, file_.string());
@@ -49,6 +52,7 @@ class PlanRun {
     if (const auto named = name_families(); !named) return fail(named.error());
     if (const auto known = take_up(); !known) return fail(known.error());
     if (const auto looked = look(); !looked) return fail(looked.error());
+    if (const auto looked = look_at_bitrates(); !looked) return fail(looked.error());
     if (desk_->dry_run) return frames();
     if (nothing_to_do()) return answer();
     if (const auto agreed = ask(); !agreed) return fail(agreed.error());
@@ -72,6 +76,15 @@ class PlanRun {
     return plan_address(*desk_, node, wish);
   }
 
+  /// Only where the drive is the one that was there when the plan was made.
+  Result<AddressChange> plan_again(std::size_t row, std::uint8_t node, AddressWish wish) {
+    wish.serial = rows_[row].serial;
+    auto change = plan_row(row, node, wish);
+    if (!change || show::change_of(journal_.drives[row], change->identity).empty()) return change;
+    return fail(drive_error(Errc::refused, node, "another drive is there than when the plan was made",
+                            "`scan --long` shows who is there"));
+  }
+
   /// Whether what stands at its place now is a drive of its family.
   Result<void> hold(std::size_t row, std::uint8_t node) const {
     const auto held = options_->hold ? options_->hold(node, *profiles_[row]) : Result<void>();
@@ -79,41 +92,19 @@ class PlanRun {
   }
 
   Result<void> take_up() {
-    const auto found = read_address_journal(path_);
-    if (!found) return fail(found.error());
-    if (*found && !options_->resume)
-      return fail(Errc::refused, fmt::format("{} was interrupted", file_.string()),
-                  "--resume continues it; `scan` shows where the drives are");
-    if (!*found && options_->resume)
-      return fail(Errc::usage, fmt::format("there is nothing to resume: {} does not exist", path_.string()),
-                  "leave --resume out");
-    journal_.checksum = checksum_of(text_);
-    if (!*found) return {};
-    if ((*found)->checksum != journal_.checksum || (*found)->drives.size() != rows_.size())
-      return fail(Errc::refused, fmt::format("{} has changed since it was interrupted", file_.string()),
-                  "resuming needs the plan as it was");
-    journal_ = **found;
-    return same_families();
-  }
-
-  Result<void> same_families() const {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto& begun = journal_.families[i];
-      if (begun.empty() || begun == profiles_[i]->family) continue;
-      auto error = make_error(Errc::refused,
-                              fmt::format("it was begun as a {}, not as a {}", begun, profiles_[i]->family),
-                              "resuming needs the families as they were");
-      return fail(with_row(rows_[i], std::move(error)));
-    }
-    return {};
+    auto journal = begin_address_journal(file_, checksum_of(text_), rows_.size(), options_->resume);
+    if (!journal) return fail(journal.error());
+    journal_ = std::move(*journal);
+    return options_->resume ? same_families(rows_, profiles_, journal_) : Result<void>();
   }
 
   Result<void> look() {
     if (options_->resume) return look_again();
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (const auto held = hold(i, rows_[i].node); !held) return held;
-    const auto used = session::nodes_in_use(*session_, canopen::every_node_id());
+    const auto used = session::nodes_in_use(*session_, canopen::every_node_id(), {.guards = !desk_->dry_run});
     if (!used) return fail(used.error());
+    tell_unguarded(*desk_);
     std::set<std::uint8_t> taken;
     for (const auto& each : *used) taken.insert(each.first);
     auto steps = order_address_steps(rows_, taken);
@@ -147,46 +138,56 @@ class PlanRun {
   }
 
   bool nothing_to_do() {
-    if (options_->resume || !journal_.steps.empty() || has_bitrates()) return false;
+    if (options_->resume || !journal_.steps.empty() || bitrate_of(rows_)) return false;
     for (std::size_t i = 0; i < rows_.size(); ++i)
       if (!changes_[i].idle()) return false;
     for (std::size_t i = 0; i < rows_.size(); ++i) note(i, text_of(AddressEnd::nothing_to_do));
     return true;
   }
 
-  bool has_bitrates() const { return bitrate_of(rows_).has_value(); }
-
   Result<Value> frames() {
-    std::vector<AddressChange> sent;
-    for (std::size_t i = 0; i < changes_.size(); ++i) {
-      sent.push_back(changes_[i]);
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
       const auto goes_aside = std::count_if(journal_.steps.begin(), journal_.steps.end(),
                                             [&](const AddressStep& step) { return step.row == i; }) > 1;
-      if (rows_[i].bitrate)
+      if (rows_[i].bitrate && !journal_.steps.empty())
         desk_->notices.push_back(
             fmt::format("node {}: its bitrate is written at the end, when all have moved", rows_[i].to));
       if (goes_aside)
         desk_->notices.push_back(
             fmt::format("node {}: it steps aside to a free node-ID first, see the steps", rows_[i].node));
     }
-    desk_->tell_value(Value(address_steps(rows_, journal_)));
-    return planned_address(*desk_, sent, options_->each.unlock);
+    show_steps();
+    bitrate_.tell_commands();
+    return planned_address_plan(*desk_, rows_, profiles_, journal_, options_->each.unlock);
+  }
+
+  void show_steps() const {
+    if (journal_.done < journal_.steps.size()) desk_->tell_value(Value(address_steps(rows_, journal_)));
+  }
+
+  Result<void> look_at_bitrates() {
+    const auto bitrate = bitrate_of(rows_);
+    if (!bitrate) return {};
+    const auto changes = planned_bitrates(*desk_, rows_, profiles_, journal_);
+    return changes ? bitrate_.look(*changes, *bitrate) : fail(changes.error());
   }
 
   Result<void> ask() const {
-    desk_->tell_value(Value(address_steps(rows_, journal_)));
-    return desk_->confirm(question_address_plan(rows_, journal_.steps.size() - journal_.done));
+    show_steps();
+    return desk_->confirm(
+        question_address_plan(rows_, journal_.steps.size() - journal_.done, bitrate_.then()));
   }
 
   Result<void> carry_out() {
     if (const auto noted = write_address_journal(path_, journal_); !noted) return noted;
     const bool all = move_all() && set_bitrates();
+    if (all) bitrate_.end(rows_, [this](std::size_t row, std::string_view result) { note(row, result); });
     if (options_->moved)
       for (std::size_t i = 0; i < rows_.size(); ++i)
         if (rows_[i].node != rows_[i].to && place_of_row(rows_[i], journal_, i) == rows_[i].to)
           options_->moved(rows_[i], ends_[i].serial);
     std::error_code ignored;
-    if (all || (journal_.done == 0 && !journal_.begun && !has_written_bitrate_))
+    if (all || (!options_->resume && journal_.done == 0 && !journal_.begun && !has_written_bitrate_))
       std::filesystem::remove(path_, ignored);
     else
       desk_->notices.push_back("the plan is not finished: --resume continues once the cause is removed");
@@ -202,15 +203,11 @@ class PlanRun {
 
   bool move_next() {
     const auto step = journal_.steps[journal_.done];
-    const auto row = rows_[step.row];
     const std::uint8_t to[] = {step.to};
-    auto change = plan_row(step.row, step.from, {.node = step.to, .bus_bitrate = options_->bus_bitrate});
-    if (change && !show::change_of(journal_.drives[step.row], change->identity).empty())
-      change =
-          fail(drive_error(Errc::refused, step.from, "another drive is there than when the plan was made",
-                           "`scan --long` shows who is there"));
+    const auto change =
+        plan_again(step.row, step.from, {.node = step.to, .bus_bitrate = options_->bus_bitrate});
     if (!change) return stop(step.row, change.error());
-    if (const auto free = refuse_taken(*session_, to, Duration::zero()); !free)
+    if (const auto free = refuse_taken(*desk_, to, Duration::zero()); !free)
       return stop(step.row, free.error());
     journal_.begun = true;
     if (const auto noted = write_address_journal(path_, journal_); !noted)
@@ -219,7 +216,7 @@ class PlanRun {
     note(step.row, text_of(outcome.end));
     if (outcome.end == AddressEnd::as_before) journal_.begun = false;
     if (outcome.end != AddressEnd::moved) return stop(step.row, outcome.error.value_or(awaits_power(step)));
-    if (outcome.error) desk_->errors.push_back(with_row(row, *outcome.error));
+    if (outcome.error) desk_->errors.push_back(with_row(rows_[step.row], *outcome.error));
     journal_.begun = false;
     ++journal_.done;
     if (const auto noted = write_address_journal(path_, journal_); !noted)
@@ -236,34 +233,33 @@ class PlanRun {
 
   /// Drives that stay where they are, with another bitrate at their next start.
   bool set_bitrates() {
-    bool all = true;
-    for (std::size_t i = 0; all && i < rows_.size(); ++i) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
       if (!rows_[i].bitrate) {
-        if (ends_[i].result == "not reached") note(i, text_of(AddressEnd::nothing_to_do));
+        note_idle(i);
         continue;
       }
-      const auto change = plan_row(i, rows_[i].to, {.bitrate = rows_[i].bitrate});
-      AddressOutcome outcome;
-      if (change)
-        outcome = change_address(*desk_, *change, options_->each);
+      auto change = plan_again(i, rows_[i].to, {.bitrate = rows_[i].bitrate});
+      if (!change) return stop(i, change.error());
+      auto outcome = change_address(*desk_, *change, options_->each);
+      has_written_bitrate_ = has_written_bitrate_ || (outcome.end != AddressEnd::nothing_to_do &&
+                                                      outcome.end != AddressEnd::as_before);
+      if (outcome.error) return stop(i, *outcome.error);
+      if (outcome.end == AddressEnd::nothing_to_do)
+        note_idle(i);
       else
-        outcome.error = change.error();
-      all = !outcome.error || stop(i, *outcome.error);
-      if (!all) continue;
-      has_written_bitrate_ = true;
-      note(i, outcome.end == AddressEnd::nothing_to_do
-                  ? ends_[i].result
-                  : fmt::format("{} from the next start", drive::bitrate_text(*rows_[i].bitrate)));
+        note(i, fmt::format("{} from the next start", drive::bitrate_text(*rows_[i].bitrate)));
+      bitrate_.add(i, std::move(*change), std::move(outcome));
     }
-    if (has_written_bitrate_)
-      for (const auto& line : bitrate_steps(session_->url(), *bitrate_of(rows_)))
-        desk_->notices.push_back(line);
-    return all;
+    return true;
   }
 
   void note(std::size_t row, std::string_view result) {
     ends_[row].result = result;
     ends_[row].serial = journal_.drives[row].serial;
+  }
+
+  void note_idle(std::size_t row) {
+    if (ends_[row].result == "not reached") note(row, text_of(AddressEnd::nothing_to_do));
   }
 
   Value answer() const {
@@ -285,8 +281,9 @@ class PlanRun {
   std::vector<const drive::Profile*> profiles_;  ///< Of each row.
   std::vector<AddressChange> changes_;
   std::vector<RowEnd> ends_;
-  bool has_written_bitrate_ = false;
   AddressJournal journal_;
+  bool has_written_bitrate_ = false;
+  PlanBitrate bitrate_;
 };
 
 }  // namespace

@@ -2,11 +2,30 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <utility>
 
 #include "session/scan.hpp"
 #include "show/identity.hpp"
 
 namespace servoctl::settings {
+
+Result<AddressJournal> begin_address_journal(const std::filesystem::path& plan, std::string checksum,
+                                             std::size_t rows, bool resume) {
+  const auto path = address_journal_of(plan);
+  auto found = read_address_journal(path);
+  if (!found) return fail(found.error());
+  if (*found && !resume)
+    return fail(Errc::refused, fmt::format("{} was interrupted", plan.string()),
+                "--resume continues it; `scan` shows where the drives are");
+  if (!*found && resume)
+    return fail(Errc::usage, fmt::format("there is nothing to resume: {} does not exist", path.string()),
+                "leave --resume out");
+  if (!*found) return AddressJournal{.checksum = std::move(checksum)};
+  if ((*found)->checksum != checksum || (*found)->drives.size() != rows)
+    return fail(Errc::refused, fmt::format("{} has changed since it was interrupted", plan.string()),
+                "resuming needs the plan as it was");
+  return std::move(**found);
+}
 
 Result<void> settle_address_step(session::Session& session, AddressJournal& journal) {
   if (!journal.begun || journal.done >= journal.steps.size()) return {};
@@ -43,6 +62,19 @@ bool has_steps_left(const AddressJournal& journal, std::size_t row) {
   for (std::size_t i = journal.done; i < journal.steps.size(); ++i)
     if (journal.steps[i].row == row) return true;
   return false;
+}
+
+Result<void> same_families(std::span<const AddressRow> rows, std::span<const drive::Profile* const> profiles,
+                           const AddressJournal& journal) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto& begun = journal.families[i];
+    if (begun.empty() || begun == profiles[i]->family) continue;
+    auto error = make_error(Errc::refused,
+                            fmt::format("it was begun as a {}, not as a {}", begun, profiles[i]->family),
+                            "resuming needs the families as they were");
+    return fail(with_row(rows[i], std::move(error)));
+  }
+  return {};
 }
 
 Error awaits_power(const AddressStep& step) {

@@ -22,8 +22,27 @@ constexpr Duration kCommandLeaves = std::chrono::milliseconds(20);
 constexpr Duration kBooting = std::chrono::seconds(10);
 constexpr Duration kLookAgain = std::chrono::seconds(2);
 
-bool restarts_over_bus(const AddressChange& change) {
-  return change.restart != drive::NmtRules::Restart::power_cycle;
+using drive::NmtRules;
+
+bool restarts_over_bus(const BitrateSwitch& plan) { return plan.restart != NmtRules::Restart::power_cycle; }
+
+/// What is enough for all of them: power for one is power for all, and a reset of a node resets its
+/// communication as well (CiA 301, 7.3.2.2.1).
+NmtRules::Restart restart_of(std::span<const AddressChange> changes) {
+  auto out = NmtRules::Restart::reset_communication;
+  for (const auto& change : changes) {
+    if (change.restart == NmtRules::Restart::power_cycle) return change.restart;
+    if (change.restart == NmtRules::Restart::reset_node) out = change.restart;
+  }
+  return out;
+}
+
+/// The one that all are of; empty where they are of several.
+std::string family_of(std::span<const AddressChange> changes) {
+  const auto& first = changes.front().profile->family;
+  const bool one = std::ranges::all_of(
+      changes, [&](const AddressChange& change) { return change.profile->family == first; });
+  return one ? first : std::string();
 }
 
 /// All drives and the interface, between two bitrates.
@@ -38,7 +57,7 @@ class SwitchRun {
       after_.push_back(change.to);
       changes_.push_back(std::move(change));
     }
-    over_bus_ = restarts_over_bus(changes_.front());
+    over_bus_ = restarts_over_bus(plan);
   }
 
   void run(std::span<AddressOutcome> outcomes) {
@@ -69,7 +88,7 @@ class SwitchRun {
   }
 
   Result<void> reset_all() {
-    if (const auto sent = session::restart_node(*session_, 0, changes_.front().restart); !sent) return sent;
+    if (const auto sent = session::restart_node(*session_, 0, plan_->restart); !sent) return sent;
     const auto left = session_->wait([] { return false; }, session_->now() + kCommandLeaves);
     // The command has gone out: nobody can stop between the two bitrates any more.
     return left || left.error().code == Errc::interrupted ? Result<void>() : fail(left.error());
@@ -187,38 +206,48 @@ Result<BitrateSwitch> plan_switch(show::Desk& desk, std::unique_ptr<can::LinkCon
                                   const AddressOptions& options, const std::optional<bool>& may_change) {
   if (changes.empty()) return BitrateSwitch{.bitrate = bitrate};
   auto out = plan_bus_bitrate(std::move(link), bitrate, may_change);
-  if (!out || !out->follows()) return out;
-  if (!restarts_over_bus(changes.front()) && options.patience == Duration::zero()) {
+  if (!out) return out;
+  out->restart = restart_of(changes);
+  if (!out->follows()) return out;
+  if (!restarts_over_bus(*out) && options.patience == Duration::zero()) {
     out->why_not = "the drives have to be switched off and on: with --wait 5min they are waited for";
     return out;
   }
   std::vector<std::uint8_t> drives;
   for (const auto& change : changes) drives.push_back(change.node);
-  const auto others = session::nodes_beside(*desk.session, drives);
+  const auto others = session::nodes_beside(*desk.session, drives, {.guards = !desk.dry_run});
   if (!others) return fail(others.error());
   if (!others->empty())
     out->why_not =
-        fmt::format("node{} {} would be left at {}; -n all names all that answer",
+        fmt::format("node{} {} would be left at {}: all on the bus have to be named, and to answer",
                     others->size() == 1 ? "" : "s", fmt::join(*others, ", "), old_bitrate_text(*out));
   return out;
 }
 
-std::string switch_text(const BitrateSwitch& plan, const AddressChange& change) {
+std::string switch_text(const BitrateSwitch& plan) {
   return fmt::format("{}, and {} goes to {} (from {})",
-                     restarts_over_bus(change)
-                         ? fmt::format("then all are restarted at once (NMT {})", drive::name(change.restart))
+                     restarts_over_bus(plan)
+                         ? fmt::format("then all are restarted at once (NMT {})", drive::name(plan.restart))
                          : std::string("then all have to be switched off and on"),
                      plan.link->name(), bitrate_text(plan.bitrate), session::settings_text(plan.before));
 }
 
-std::string switch_commands(const BitrateSwitch& plan, const AddressChange& change) {
+std::string switch_commands(const BitrateSwitch& plan) {
   const auto& name = plan.link->name();
   return fmt::format(
       "{}, `{}`, `{}`",
-      restarts_over_bus(change) ? fmt::format("{} (NMT {} to all)", session::restart_frame(0, change.restart),
-                                              drive::name(change.restart))
-                                : std::string("when the drives are off"),
+      restarts_over_bus(plan) ? fmt::format("{} (NMT {} to all)", session::restart_frame(0, plan.restart),
+                                            drive::name(plan.restart))
+                              : std::string("when the drives are off"),
       can::ip_command(name, {.up = false}), can::ip_command(name, {.up = true, .bitrate = plan.bitrate}));
+}
+
+void tell_bitrate_by_hand(show::Desk& desk, const BitrateSwitch& plan,
+                          std::span<const AddressChange> changes) {
+  if (plan.link != nullptr && !plan.why_not.empty())
+    desk.notices.push_back(fmt::format("{} is left alone: {}", plan.link->name(), plan.why_not));
+  for (const auto& line : bitrate_steps(desk.session->url(), plan.bitrate, family_of(changes)))
+    desk.notices.push_back(line);
 }
 
 void follow_bitrate(show::Desk& desk, BitrateSwitch& plan, std::span<const AddressChange> changes,

@@ -24,8 +24,12 @@ Result<BitrateSwitch> plan_switch(show::Desk& desk, std::unique_ptr<can::LinkCon
 
 /// What happens behind the writes, for a question: `then all are restarted together (NMT reset node), and
 /// can0 goes from 250 kbit/s to 500 kbit/s`; and the messages and commands of it, for a dry run.
-std::string switch_text(const BitrateSwitch& plan, const AddressChange& change);
-std::string switch_commands(const BitrateSwitch& plan, const AddressChange& change);
+std::string switch_text(const BitrateSwitch& plan);
+std::string switch_commands(const BitrateSwitch& plan);
+
+/// What somebody has to do by hand where the interface stays, as notices: why it does, and the steps.
+void tell_bitrate_by_hand(show::Desk& desk, const BitrateSwitch& plan,
+                          std::span<const AddressChange> changes);
 
 /// Restarts the drives, all with one NMT command or by asking somebody to switch them off and on, takes the
 /// interface to the bitrate when they are gone from the old one, and looks for each. Where none is found and

@@ -50,8 +50,8 @@ Result<bool> take_back(session::Session& session, BitrateSwitch& plan, const std
 }
 
 std::string lss_switch_text(const BitrateSwitch& plan) {
-  return fmt::format("{} goes with them to {} (from {})", plan.link->name(), drive::bitrate_text(plan.bitrate),
-                     session::settings_text(plan.before));
+  return fmt::format("{} goes with them to {} (from {})", plan.link->name(),
+                     drive::bitrate_text(plan.bitrate), session::settings_text(plan.before));
 }
 
 std::string lss_switch_commands(const BitrateSwitch& plan) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "drive/rules.hpp"
 #include "session/bus_setup.hpp"
 #include "session/session.hpp"
 
@@ -18,6 +19,8 @@ struct BitrateSwitch {
   std::unique_ptr<can::LinkControl> link = {};  ///< Null: the bus has no bitrate that could be set.
   can::LinkState before = {};
   std::string why_not = {};  ///< A sentence: why it is left alone; empty: it follows.
+  /// What restarts all drives of it at once, of whatever families.
+  drive::NmtRules::Restart restart = drive::NmtRules::Restart::power_cycle;
 
   bool follows() const { return link != nullptr && why_not.empty(); }
 };

@@ -8,8 +8,10 @@
 #include "canopen/node_id.hpp"
 #include "drive/bitrate.hpp"
 #include "session/addressing.hpp"
+#include "session/identify.hpp"
 #include "session/option_scope.hpp"
 #include "session/stretch.hpp"
+#include "settings/lss_crowd.hpp"
 #include "settings/lss_node.hpp"
 
 namespace servoctl::settings {
@@ -27,40 +29,6 @@ constexpr std::chrono::milliseconds kLeastDelay(250);
 constexpr Duration kTalkAgain = std::chrono::milliseconds(100);
 constexpr Duration kLookFor = std::chrono::seconds(5);
 constexpr Duration kLookPause = std::chrono::seconds(1);
-
-/// Who is to change, as far as LSS tells: their node-IDs, and how many have none.
-struct Crowd {
-  std::vector<std::uint8_t> nodes;
-  std::size_t others = 0;  ///< Slaves without a node-ID that are not meant.
-};
-
-Result<LssDialogue::Answers> all_answers(LssDialogue& lss) {
-  if (const auto reset = lss.ask(canopen::lss_switch_all(canopen::LssState::waiting)); !reset)
-    return fail(reset.error());
-  if (const auto sent = lss.select_all(); !sent) return fail(sent.error());
-  return lss.ask(canopen::lss_inquire(LssService::inquire_node));
-}
-
-Result<Crowd> crowd_of(session::Session& session, const LssBitrateChange& change) {
-  LssDialogue lss(session, session.options().timeout);
-  Crowd out;
-  if (change.all) {
-    const auto answers = all_answers(lss);
-    if (!answers) return fail(answers.error());
-    for (const auto& answer : *answers) out.nodes.push_back(static_cast<std::uint8_t>(answer.number & 0xFFU));
-  } else {
-    const auto slave = lss.select(change.address);
-    if (!slave) return fail(slave.error());
-    if (slave->node) out.nodes.push_back(*slave->node);
-    if (const auto left = lss.leave(); !left) return fail(left.error());
-    const auto without = lss.ask(canopen::lss_identify_unconfigured());
-    if (!without) return fail(without.error());
-    const std::size_t own = slave->is_unconfigured() ? 1 : 0;
-    out.others = without->size() - std::min(own, without->size());
-  }
-  if (const auto left = lss.leave(); !left) return fail(left.error());
-  return out;
-}
 
 /// What holds after one of several slaves did not do as the others.
 std::string not_activated(const LssRequest& request, std::string_view more) {
@@ -235,7 +203,7 @@ class LssBitrateRun {
   /// How many of those that were told answer here.
   Result<std::size_t> present() {
     LssDialogue lss(*session_, session_->options().timeout);
-    const auto answers = change_->all ? all_answers(lss) : lss.ask(canopen::lss_select(*out_.address));
+    const auto answers = change_->all ? all_lss_answers(lss) : lss.ask(canopen::lss_select(*out_.address));
     const auto left = lss.leave();
     if (!answers) return fail(answers.error());
     if (!left) return fail(left.error());
@@ -269,23 +237,6 @@ Result<BitrateSwitch> plan_lss_switch(std::unique_ptr<can::LinkControl> link, co
   if (std::chrono::milliseconds(*change.delay_ms) < kLeastDelay)
     out->why_not = fmt::format("{} ms are too short for it: --activate 1s", *change.delay_ms);
   return out;
-}
-
-Result<void> leave_nobody_behind(session::Session& session, const LssBitrateChange& change,
-                                 BitrateSwitch& plan) {
-  if (!plan.follows()) return {};
-  const auto crowd = crowd_of(session, change);
-  if (!crowd) return fail(crowd.error());
-  const auto others = session::nodes_beside(session, crowd->nodes);
-  if (!others) return fail(others.error());
-  if (!others->empty())
-    plan.why_not =
-        fmt::format("node{} {} would be left at {}: no LSS slave, or not one that is meant",
-                    others->size() == 1 ? "" : "s", fmt::join(*others, ", "), old_bitrate_text(plan));
-  else if (crowd->others > 0)
-    plan.why_not = fmt::format("an LSS slave without a node-ID would be left at {}: --all takes it along",
-                               old_bitrate_text(plan));
-  return {};
 }
 
 Result<LssBitrateOutcome> set_lss_bitrate(show::Desk& desk, const LssBitrateChange& change,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "canopen/node_id.hpp"
+#include "session/can_network.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
 #include "session/scan.hpp"
@@ -28,9 +29,19 @@ class LssNodeRun {
       : session_(desk.session), slave_(&slave), change_(&change) {}
 
   LssNodeOutcome run() {
+    const bool stays = has_lss_node(*slave_, *change_);
+    if (stays && !change_->keep) {
+      out_ = {.result = "nothing to do", .taken = true, .done = true};
+      return std::move(out_);
+    }
     {
       const session::Deaf deaf(*session_);
-      if (!configure() || !restart()) return std::move(out_);
+      if (!configure() || (!stays && !restart())) return std::move(out_);
+    }
+    if (stays) {
+      out_.done = true;
+      out_.result = "stored";
+      return std::move(out_);
     }
     find();
     return std::move(out_);
@@ -139,21 +150,39 @@ class LssNodeRun {
   LssNodeOutcome out_;
 };
 
+/// Before a reset by number: a second drive of it is noticed by what never changes.
+Result<void> hold_still(session::Session& session, std::uint8_t node) {
+  if (const auto asked = session::read_identity(session, node); !asked) return fail(asked.error());
+  const std::uint8_t here[] = {node};
+  if (const auto heard = session::settle_duplicates(session, here, session::kBeforeMotion); !heard)
+    return heard;
+  return refuse_energised(session, node, "its address");
+}
+
 }  // namespace
 
-Result<LssSlave> look_at_lss_slave(session::Session& session, const LssNodeChange& change) {
+Result<LssSlave> look_at_lss_slave(show::Desk& desk, const LssNodeChange& change) {
+  auto& session = *desk.session;
   LssDialogue lss(session, session.options().timeout);
   auto slave = lss.select(change.address);
   if (!slave) return slave;
   if (const auto left = lss.leave(); !left) return fail(left.error());
-  const bool configured = slave->node && !slave->is_unconfigured();
-  if (configured)
-    if (const auto still = refuse_energised(session, *slave->node, "its address"); !still)
-      return fail(still.error());
-  if (change.to == kUnconfigured || slave->node == change.to) return slave;
+  const bool stays = has_lss_node(*slave, change);
+  if (stays && !change.keep) return slave;
+  if (slave->node && !slave->is_unconfigured())
+    if (const auto still = hold_still(session, *slave->node); !still) return fail(still.error());
+  if (change.to == kUnconfigured || stays) return slave;
   const std::uint8_t target[] = {change.to};
-  if (const auto free = refuse_taken(session, target); !free) return fail(free.error());
+  if (const auto free = refuse_taken(desk, target); !free) return fail(free.error());
   return slave;
+}
+
+bool has_lss_node(const LssSlave& slave, const LssNodeChange& change) { return slave.node == change.to; }
+
+std::string shared_lss_node(session::Session& session, const LssSlave& slave) {
+  auto* can = session.can();
+  const bool has_node = slave.node && !slave.is_unconfigured();
+  return can != nullptr && has_node ? can->duplicates().noticed(*slave.node) : std::string();
 }
 
 LssNodeOutcome give_lss_node(show::Desk& desk, const LssSlave& slave, const LssNodeChange& change) {

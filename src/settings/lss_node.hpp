@@ -20,8 +20,15 @@ struct LssNodeChange {
 inline constexpr Duration kLssStorePatience = std::chrono::seconds(3);
 
 /// Selects the slave, asks what it is, and sends all back to waiting; refuses what must not be changed now:
-/// an energised drive, and a node-ID that somebody else uses. Changes nothing.
-Result<session::LssSlave> look_at_lss_slave(session::Session& session, const LssNodeChange& change);
+/// an energised drive, or one whose number an energised one has too, which hears the reset as well, and a
+/// node-ID that somebody else uses. Changes nothing.
+Result<session::LssSlave> look_at_lss_slave(show::Desk& desk, const LssNodeChange& change);
+
+/// It has this node-ID already: there is nothing to restart, and nothing to do unless it is to be stored.
+bool has_lss_node(const session::LssSlave& slave, const LssNodeChange& change);
+
+/// What showed that another drive has the number of the slave, in words; empty: nothing.
+std::string shared_lss_node(session::Session& session, const session::LssSlave& slave);
 
 /// What came of it.
 struct LssNodeOutcome {

@@ -196,6 +196,19 @@ TEST_F(NodeWatchTest, DoesNotMissAGuardedNode) {
   EXPECT_EQ(watch.deadline(), now + 300ms);
 }
 
+/// A node that was asked now and then promises nothing.
+TEST_F(NodeWatchTest, DoesNotTakeAnswersToItsOwnQuestionsForHeartbeats) {
+  for (int i = 0; i < 5; ++i) {
+    watch.on_sent(frame("705#R1"));
+    hear("705#04", 100ms);
+  }
+  EXPECT_EQ(watch.deadline(), kNever);
+  EXPECT_EQ(watch.state(5), NmtState::stopped);
+  for (int i = 0; i < 4; ++i) hear("706#05", 100ms);
+  watch.on_sent(frame("705#R1"));
+  EXPECT_EQ(watch.deadline(), now + 300ms) << "that of node 6";
+}
+
 TEST_F(NodeWatchTest, ForgetsWhatItHasLearned) {
   for (int i = 0; i < 4; ++i) hear("705#05", 100ms);
   hear("705#00", 1ms);

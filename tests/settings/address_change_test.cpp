@@ -72,7 +72,7 @@ TEST(AddressChange, ALockedParameterNamesThePassword) {
 TEST(AddressChange, ANodeIdThatAnswersIsRefused) {
   AddressWorld world("gsd600", {3, 5});
   const std::uint8_t to[] = {5};
-  const auto free = refuse_taken(*world.session, to);
+  const auto free = refuse_taken(world.desk, to);
   ASSERT_FALSE(free);
   EXPECT_EQ(free.error().code, Errc::refused);
   EXPECT_NE(free.error().message.find("it answers"), std::string::npos) << free.error().message;
@@ -83,9 +83,46 @@ TEST(AddressChange, ANodeIdWhoseNodeOnlySendsHeartbeatsIsRefused) {
   ASSERT_TRUE(world.session->download(5, objects::kProducerHeartbeat, store_le(1000, 2)));
   (void)world.bus.send(*can::parse_frame("000#0205"));
   const std::uint8_t to[] = {5};
-  const auto free = refuse_taken(*world.session, to);
+  const auto free = refuse_taken(world.desk, to);
   ASSERT_FALSE(free);
   EXPECT_NE(free.error().message.find("it sends heartbeats"), std::string::npos) << free.error().message;
+}
+
+TEST(AddressChange, ANodeIdWhoseNodeIsStoppedIsRefused) {
+  AddressWorld world("gsd600", {3, 5});
+  (void)world.session->wait([] { return false; }, world.session->now() + 1s);
+  (void)world.bus.send(*can::parse_frame("000#0205"));
+  const std::uint8_t to[] = {5};
+  const auto free = refuse_taken(world.desk, to);
+  ASSERT_FALSE(free);
+  EXPECT_EQ(free.error().code, Errc::refused);
+  EXPECT_NE(free.error().message.find("it says that it is stopped (NMT)"), std::string::npos)
+      << free.error().message;
+}
+
+/// Node guarding begins with the first request: a drive that guards its master's life would miss the next.
+TEST(AddressChange, ADryRunAsksNobodyByNodeGuarding) {
+  AddressWorld world("gsd600", {3});
+  world.desk.dry_run = true;
+  const std::uint8_t to[] = {5};
+  EXPECT_TRUE(refuse_taken(world.desk, to));
+  EXPECT_EQ(world.count("705#R1"), 0U);
+  world.desk.dry_run = false;
+  EXPECT_TRUE(refuse_taken(world.desk, to));
+  EXPECT_EQ(world.count("705#R1"), 1U);
+}
+
+TEST(AddressChange, ABusWithoutRemoteFramesSaysWhatWasNotLookedFor) {
+  AddressWorld world("gsd600", {3});
+  session::Session session(std::make_unique<HookedBus>(world.bus, world.hooks, world.sent),
+                           "socketcand://pi/can0", {});
+  world.desk.session = &session;
+  const std::uint8_t to[] = {5};
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(refuse_taken(world.desk, to));
+  EXPECT_EQ(world.notices(),
+            "socketcand://pi/can0 carries no remote frames: nodes that are stopped (NMT) were not looked "
+            "for\n");
+  EXPECT_EQ(world.count("705#R1"), 0U);
 }
 
 TEST(AddressChange, TheNodeIdOfServoctlsOwnHeartbeatIsRefused) {
@@ -93,9 +130,9 @@ TEST(AddressChange, TheNodeIdOfServoctlsOwnHeartbeatIsRefused) {
   ASSERT_TRUE(world.session->network().arm_watchdog(
       3, {.kind = session::LifeSign::Kind::heartbeat, .producer = 9, .period = 100ms}));
   const std::uint8_t to[] = {9};
-  EXPECT_FALSE(refuse_taken(*world.session, to));
+  EXPECT_FALSE(refuse_taken(world.desk, to));
   const std::uint8_t other[] = {10};
-  EXPECT_TRUE(refuse_taken(*world.session, other));
+  EXPECT_TRUE(refuse_taken(world.desk, other));
 }
 
 TEST(AddressChange, TheNodeThatItHasAlreadyIsNothingToDo) {
@@ -155,6 +192,20 @@ TEST(AddressChange, AnAddressThatCannotBeKeptIsPutBack) {
   EXPECT_EQ(world.count("000#8103"), 0U);
 }
 
+TEST(AddressChange, AnAddressWhoseStoringIsNotAnsweredMayHold) {
+  AddressWorld world("gsd600", {3});
+  world.hooks.before_send = [&](const can::Frame& frame) {
+    if (is_write_to(frame, objects::kStoreAll)) world.drives[0]->wire_faults().drop_answers = 1;
+  };
+  const auto outcome = move_to(world, 3, 5);
+  EXPECT_EQ(outcome.end, AddressEnd::failed) << text_of(outcome.end);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_NE(outcome.error->message.find("which of them it has after power-off is not known"),
+            std::string::npos)
+      << outcome.error->message;
+  EXPECT_EQ(world.held(0, "Pn0049"), 3U) << "the old one was written back";
+}
+
 TEST(AddressChange, AnEnergisedDriveIsLeftAlone) {
   AddressWorld world("gsd600", {3});
   for (const auto word : {0x06U, 0x07U, 0x0FU})
@@ -192,7 +243,8 @@ TEST(AddressChange, ADriveWithANewBitrateIsNotRestarted) {
   EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
   EXPECT_EQ(world.held(0, "Pn0048"), 6U);
   for (const auto& frame : world.sent) EXPECT_FALSE(frame.starts_with("000#")) << frame;
-  EXPECT_NE(bitrate_steps("can0", 500'000)[3].find("`bus up can0 --bitrate 500000`"), std::string::npos);
+  EXPECT_NE(bitrate_steps("can0", 500'000, "gsd600")[3].find("`bus up can0 --bitrate 500000`"),
+            std::string::npos);
 }
 
 TEST(AddressChange, ADriveWithANewBitrateIsNotWaitedForEither) {
@@ -229,6 +281,7 @@ TEST(AddressChange, COBIDsThatAreStoredWithTheOldNodeAreNamed) {
   EXPECT_EQ(outcome.end, AddressEnd::moved);
   EXPECT_FALSE(outcome.stayed.empty());
   EXPECT_NE(world.notices().find("0x1400:1 = 0x00000203"), std::string::npos) << world.notices();
+  EXPECT_NE(world.notices().find("`pdo show -n 5`"), std::string::npos) << "where it is now";
 }
 
 TEST(AddressChange, COBIDsThatFollowAreNotNamed) {

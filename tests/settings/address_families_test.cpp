@@ -50,9 +50,9 @@ TEST_F(PlanOfFamilies, ExchangeTheirNodeIdsInOnePlan) {
 
 TEST_F(PlanOfFamilies, KilledAnywhereCanBeGoneOnWith) {
   text_ = "node,new,family\n1,2,gsd600\n2,1,da200\n";
-  int frames = 140;
+  int frames = 265;
   int resumed = 0;
-  for (int kill_at = 137; kill_at < frames; kill_at += 5) {
+  for (int kill_at = 262; kill_at < frames; kill_at += 5) {
     fs::remove(address_journal_of(file_));
     auto cell = std::make_unique<AddressWorld>("gsd600", std::vector<std::uint8_t>{1});
     cell->add(2, other_);

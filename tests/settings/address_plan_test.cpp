@@ -89,9 +89,9 @@ TEST_F(PlanOfAddresses, AskedASecondTimeFindsTheirPlacesTaken) {
 TEST_F(PlanOfAddresses, KilledAnywhereCanBeGoneOnWith) {
   text_ = "node,new\n1,2\n2,1\n";
   // Every third frame behind the question who is there.
-  int frames = 140;
+  int frames = 265;
   int resumed = 0;
-  for (int kill_at = 137; kill_at < frames; kill_at += 3) {
+  for (int kill_at = 262; kill_at < frames; kill_at += 3) {
     fs::remove(address_journal_of(file_));
     AddressWorld world("gsd600", {1, 2});
     session::Trouble trouble;

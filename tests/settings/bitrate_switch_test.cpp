@@ -199,6 +199,15 @@ TEST(BitrateSwitch, LeavesAnInterfaceAloneThatWouldLeaveSomebodyBehind) {
   EXPECT_NE(plan.why_not.find("node 4 would be left at 250 kbit/s"), std::string::npos) << plan.why_not;
 }
 
+TEST(BitrateSwitch, OneThatIsStoppedIsNotLeftBehindEither) {
+  BitrateCell cell("gsd600", {3, 4, 5});
+  (void)cell.world.session->wait([] { return false; }, cell.world.session->now() + 1s);
+  (void)cell.world.bus.send(*can::parse_frame("000#0205"));
+  const auto plan = cell.plan(cell.changes());
+  EXPECT_FALSE(plan.follows());
+  EXPECT_NE(plan.why_not.find("node 5 would be left at 250 kbit/s"), std::string::npos) << plan.why_not;
+}
+
 TEST(BitrateSwitch, DrivesThatWaitForTheirPowerNeedSomebodyWhoWaits) {
   BitrateCell cell("ts");
   const auto plan = cell.plan(cell.changes());
@@ -227,11 +236,11 @@ TEST(BitrateSwitch, SaysBeforeWhatItWillDo) {
   BitrateCell cell("gsd600");
   const auto all = cell.changes();
   const auto plan = cell.plan(all);
-  EXPECT_EQ(switch_text(plan, all.front()),
+  EXPECT_EQ(switch_text(plan),
             "then all are restarted at once (NMT reset node), and can0 goes to 125 kbit/s (from 250 kbit/s, "
             "sample point 87.5 %)");
   EXPECT_EQ(
-      switch_commands(plan, all.front()),
+      switch_commands(plan),
       "000#8100 (NMT reset node to all), `ip link set can0 down`, `ip link set can0 up type can bitrate "
       "125000`");
 }

@@ -216,6 +216,26 @@ TEST_F(LssBitrate, LeavesAnInterfaceAloneThatWouldLeaveSomebodyBehind) {
   EXPECT_TRUE(all_wait());
 }
 
+TEST_F(LssBitrate, OneThatIsStoppedIsNotLeftBehindEither) {
+  build("gsd600@3,sv2@4?lss");
+  auto one = everybody();
+  one.all = false;
+  one.address = address(*cell.drives[0]);
+  (void)bus.send(*can::parse_frame("000#0204"));
+  const auto out = plan(one);
+  EXPECT_NE(out.why_not.find("node 4 would be left at 500 kbit/s"), std::string::npos) << out.why_not;
+}
+
+TEST_F(LssBitrate, TheOtherDriveOfTheSameNumberIsNotLeftBehindEither) {
+  build("gsd600@3?lss");
+  const auto second = sim::build_cell("sv2@3", kFolders, bus.now()).value();
+  drives.push_back(std::make_unique<TunedDrive>(*second.drives[0], link));
+  bus.attach(*drives.back());
+  const auto out = plan(everybody());
+  EXPECT_NE(out.why_not.find("two drives are node 3"), std::string::npos) << out.why_not;
+  EXPECT_TRUE(all_wait());
+}
+
 TEST_F(LssBitrate, ASlaveWithoutANodeIdIsNotLeftBehindEither) {
   build("gsd600@3,sv2@255?lss");
   auto one = everybody();

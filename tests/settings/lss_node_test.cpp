@@ -12,14 +12,27 @@ using namespace std::chrono_literals;
 
 class LssNode : public session::LssWorld {
  protected:
+  /// A drive without LSS that has the number of another.
+  sim::SimDrive& add_namesake(std::string_view spec) {
+    other = sim::build_cell(spec, kFolders, bus.now()).value();
+    bus.attach(*other.drives[0]);
+    (void)session->wait([] { return false; }, session->now() + 1s);
+    desk.session = session.get();
+    return *other.drives[0];
+  }
+  void energise(std::uint8_t node) {
+    for (const auto word : {0x06U, 0x07U, 0x0FU})
+      ASSERT_TRUE(session->download(node, objects::kControlword, store_le(word, 2)));
+  }
   LssNodeOutcome give(std::uint8_t to, bool keep = false) {
     desk.session = session.get();
     const LssNodeChange change{{}, to, keep};
-    const auto slave = look_at_lss_slave(*session, change);
+    const auto slave = look_at_lss_slave(desk, change);
     EXPECT_TRUE(slave) << slave.error().message;
     return slave ? give_lss_node(desk, *slave, change) : LssNodeOutcome{};
   }
   show::Desk desk;
+  sim::Cell other;
 };
 
 TEST_F(LssNode, IsFoundByItWithItsIdentity) {
@@ -74,7 +87,7 @@ TEST_F(LssNode, ASlaveThatAcknowledgesAndDoesNotStartIsTold) {
   build("sv2@255?lss");
   desk.session = session.get();
   const LssNodeChange change{{}, 5, false};
-  const auto slave = look_at_lss_slave(*session, change);
+  const auto slave = look_at_lss_slave(desk, change);
   ASSERT_TRUE(slave);
   hooks.change_answer = [&](can::Frame& frame) {
     if (frame.data[0] == 0x11) cell.drives[0]->wire_faults().silent = true;
@@ -98,11 +111,86 @@ TEST_F(LssNode, ThatIsTakenAwayIsSeenInASlaveThatDoesNotSayThatItHasNone) {
   EXPECT_TRUE(all_wait());
 }
 
+/// Both hear the reset by number.
+TEST_F(LssNode, IsNotGivenToOneOfTwoDrivesWhileEitherIsEnergised) {
+  for (const bool own : {false, true}) {
+    SCOPED_TRACE(own);
+    sim::SimBus fresh(sim::SimBus::Clock::virtual_time);
+    const auto first = sim::build_cell(own ? "gsd600@1?lss" : "sv2@1?lss", kFolders, fresh.now()).value();
+    const auto second = sim::build_cell(own ? "sv2@1" : "gsd600@1", kFolders, fresh.now()).value();
+    fresh.attach(own ? *first.drives[0] : *second.drives[0]);
+    session = std::make_unique<session::Session>(std::make_unique<session::LssBus>(fresh, hooks), "can0",
+                                                 session::Options{});
+    desk.session = session.get();
+    energise(1);
+    (own ? second : first).drives[0]->wire_faults().answer_delay = own ? 0ms : 2ms;
+    (own ? first : second).drives[0]->wire_faults().answer_delay = own ? 2ms : 0ms;
+    fresh.attach(own ? *second.drives[0] : *first.drives[0]);
+    (void)session->wait([] { return false; }, session->now() + 1s);
+    const auto slave = look_at_lss_slave(desk, {address(*first.drives[0]), 5, false});
+    ASSERT_FALSE(slave);
+    EXPECT_EQ(slave.error().code, Errc::refused);
+    EXPECT_NE(slave.error().message.find("two drives have this node-ID, and one is energised"),
+              std::string::npos)
+        << slave.error().message;
+    session.reset();
+  }
+}
+
+TEST_F(LssNode, IsGivenToOneOfTwoDrivesThatHaveNoPower) {
+  build("sv2@1?lss");
+  const auto& namesake = add_namesake("gsd600@1");
+  const LssNodeChange change{address(*cell.drives[0]), 5, false};
+  const auto slave = look_at_lss_slave(desk, change);
+  ASSERT_TRUE(slave) << slave.error().message;
+  EXPECT_NE(shared_lss_node(*session, *slave), "") << "the question names it";
+  const auto outcome = give_lss_node(desk, *slave, change);
+  EXPECT_EQ(outcome.result, "moved") << (outcome.error ? outcome.error->message : "");
+  EXPECT_EQ(cell.drives[0]->node(), 5);
+  EXPECT_EQ(namesake.node(), 1);
+}
+
+TEST_F(LssNode, ThatItHasAlreadyIsNothingToDo) {
+  build("sv2@5?lss");
+  energise(5);
+  const auto boots = session->watch().boots(5);
+  const auto outcome = give(5);
+  EXPECT_EQ(outcome.result, "nothing to do");
+  EXPECT_FALSE(outcome.error);
+  (void)session->wait([] { return false; }, session->now() + 1s);
+  EXPECT_EQ(session->watch().boots(5), boots);
+}
+
+TEST_F(LssNode, ThatItHasAlreadyIsStoredWithoutAReset) {
+  build("sv2@5?lss");
+  const auto boots = session->watch().boots(5);
+  const auto outcome = give(5, true);
+  EXPECT_EQ(outcome.result, "stored");
+  EXPECT_EQ(outcome.kept, true);
+  (void)session->wait([] { return false; }, session->now() + 1s);
+  EXPECT_EQ(session->watch().boots(5), boots);
+}
+
+TEST_F(LssNode, WhoseStoringIsNotAnsweredIsNotKnown) {
+  build("sv2@3?lss");
+  hooks.change_answer = [](can::Frame& frame) {
+    if (frame.data[0] == 0x17) frame.data[0] = 0;
+  };
+  const auto outcome = give(7, true);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_EQ(outcome.result, "not known");
+  EXPECT_FALSE(outcome.kept.has_value());
+  EXPECT_NE(outcome.error->message.find("which of them it has after power-off is not known"),
+            std::string::npos)
+      << outcome.error->message;
+}
+
 TEST_F(LssNode, ThatSomebodyUsesIsRefusedBeforeAnythingIsSet) {
   build("sv2@3,gsd600@7?lss");
+  desk.session = session.get();
   std::vector<std::uint8_t> services;
   const LssNodeChange change{address(*cell.drives[0]), 7, false};
-  const auto slave = look_at_lss_slave(*session, change);
+  const auto slave = look_at_lss_slave(desk, change);
   ASSERT_FALSE(slave);
   EXPECT_EQ(slave.error().code, Errc::refused);
   EXPECT_TRUE(all_wait());
