@@ -268,7 +268,7 @@ const Command kAddress{
         "Writes the family's own parameter, reads it back, stores it by the family's way and restarts the "
         "drive (NMT), or says that it is to be switched off and on: `drives FAMILY` shows which. Then the "
         "drive is looked for at its new node-ID, and held against what it said of itself before. A node-ID "
-        "that somebody uses is refused: all that answer, and all that are heard within 1.5 s. An energised "
+        "that somebody uses is refused: all that answer, are heard within 1.5 s, or answer node guarding. An energised "
         "drive is left alone. COB-IDs that did not follow the node-ID are listed. Masters, and nodes that watch the "
         "heartbeat of the drive, are not told of its new number.\n\n"
         "With --bitrate, all nodes of the bus are named (-n all) and change together: all are written first, then "
@@ -279,7 +279,8 @@ const Command kAddress{
         "missing, or where somebody on the bus would be left behind. --dry-run shows the commands.\n\n"
         "--plan FILE.csv renumbers several (columns node,new; family, serial and "
         "bitrate where wanted; without a family it is that of -d, else that of the axis in the cabinet file): all are looked at first, and each moves when its new node-ID is free; "
-        "drives that exchange theirs go through a free one. It ends with the first that fails; "
+        "drives that exchange theirs go through a free one. When all have their bitrate, the interface goes "
+        "with them as with --bitrate. It ends with the first that fails; "
         "FILE.csv.journal keeps how far it came, and --resume continues.",
     .parameters = kAddressParameters,
     .examples = kAddressExamples,

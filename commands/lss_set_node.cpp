@@ -121,8 +121,9 @@ const Command kLssSetNode{
     .details =
         "The slave is named as for `lss inquire`: by its identity (--vendor, --product, --revision, "
         "--serial), by -n, or by --only. A slave without a node-ID starts with the new one at once; of one "
-        "that has a node-ID the communication is reset (NMT), and an energised drive is left alone. A "
-        "node-ID that somebody uses is refused: all that answer, and all that are heard within 1.5 s. At "
+        "that has another node-ID the communication is reset (NMT), and an energised drive is left alone, as is one "
+        "whose number an energised one has. A "
+        "node-ID that somebody uses is refused: all that answer, are heard within 1.5 s, or answer node guarding. At "
         "the end the slave is looked for by its new node-ID and its 1018h. --keep stores it; where that "
         "fails the old node-ID is set again. 255 takes the node-ID away.",
     .parameters = kLssSetNodeParameters,

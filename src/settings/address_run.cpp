@@ -7,11 +7,10 @@
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
-#include "session/option_scope.hpp"
 #include "session/scan.hpp"
 #include "session/stretch.hpp"
-#include "session/write.hpp"
 #include "settings/address_change.hpp"
+#include "settings/address_write.hpp"
 #include "settings/own_cob_ids.hpp"
 #include "show/identity.hpp"
 
@@ -41,7 +40,7 @@ class AddressRun {
       out_.end = AddressEnd::nothing_to_do;
       return std::move(out_);
     }
-    if (change_->writes.empty() || write()) restart();
+    if (change_->writes.empty() || write_address(*desk_, *change_, *options_, out_)) restart();
     return std::move(out_);
   }
 
@@ -56,79 +55,6 @@ class AddressRun {
     out_.end = end;
     out_.error = std::move(error);
     return false;
-  }
-
-  /// What is begun is brought to its end, whoever is impatient.
-  bool write() {
-    const session::Deaf deaf(*session_);
-    session::StorageScope storage(*session_, desk_->profile, change_->node);
-    const bool keeps = session::can_store(*desk_->profile);
-    if (const auto opened = storage.open(keeps, options_->unlock, true); !opened)
-      return fail_with(AddressEnd::as_before, opened.error());
-    const auto written = session::write_all(*session_, change_->writes, true);
-    const auto wrong = std::find_if(written.begin(), written.end(), [](const auto& w) { return !w; });
-    const bool all = wrong == written.end();
-    const auto back = all ? Result<void>() : put_back(written);
-    const auto done =
-        std::count_if(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
-    const auto kept = storage.close(all, static_cast<std::size_t>(done));
-    for (const auto& notice : storage.notices()) desk_->notices.push_back(notice);
-    if (!all)
-      return not_written(wrong->error(),
-                         change_->writes[static_cast<std::size_t>(wrong - written.begin())].object, back);
-    if (!kept) return not_kept(kept.error());
-    out_.kept = *kept;
-    return true;
-  }
-
-  /// A write that was refused has changed nothing; any other may have been done.
-  Result<void> put_back(std::span<const Result<session::Written>> written) {
-    Result<void> out;
-    for (std::size_t i = 0; i < written.size(); ++i) {
-      if (!written[i] && written[i].error().code == Errc::sdo_abort) continue;
-      const session::SdoRequest back[] = {{change_->node, change_->writes[i].object, change_->before[i]}};
-      const auto done = session::write_all(*session_, back, true).front();
-      if (!done) out = fail(done.error());
-    }
-    return out;
-  }
-
-  bool not_written(Error error, ObjectAddress object, const Result<void>& back) {
-    const auto& store = desk_->profile->rules.store;
-    if (error.code == Errc::sdo_abort && !store.unlock.empty() && !options_->unlock)
-      error.hint = fmt::format("it may be locked by {}: add --unlock", store.unlock);
-    if (back) return fail_with(AddressEnd::as_before, std::move(error));
-    error.message += "; what it holds now is not known: " + back.error().message;
-    error.hint = fmt::format("before it is switched off: `read {} -n {}`, which holds from its next start on",
-                             to_string(object), change_->node);
-    return fail_with(AddressEnd::failed, std::move(error));
-  }
-
-  bool store_again() {
-    session::StorageScope storage(*session_, desk_->profile, change_->node);
-    return storage.open(true, options_->unlock, true) && storage.close(true, 0);
-  }
-
-  /// An address that is written and not kept would come and go with the power.
-  bool not_kept(Error error) {
-    const std::vector<Result<session::Written>> written(change_->writes.size(), session::Written{});
-    const auto back = put_back(written);
-    // It may have stored all the same, and only its answer was lost.
-    const bool may_hold = error.code != Errc::sdo_abort;
-    error.message = "the address was written and could not be kept: " + error.message;
-    if (back && (!may_hold || store_again())) {
-      error.message += "; the old one was written back";
-      return fail_with(AddressEnd::as_before, std::move(error));
-    }
-    if (back) {
-      error.message +=
-          "; the old one was written back, and could not be stored either: which of them it has after "
-          "power-off is not known";
-      error.hint = fmt::format("`store -n {}` before it is switched off stores the old one", change_->node);
-      return fail_with(AddressEnd::failed, std::move(error));
-    }
-    error.message += "; and writing the old one back failed: " + back.error().message;
-    return fail_with(AddressEnd::failed, std::move(error));
   }
 
   void restart() {

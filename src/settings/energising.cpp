@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <utility>
+#include <vector>
 
+#include "base/text.hpp"
 #include "drive/enabling_write.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/cob_id_check.hpp"
@@ -39,6 +42,26 @@ Result<void> check_power(const show::Desk& desk, std::uint8_t node, ObjectAddres
       fmt::format("this energises the motor, or sets it in motion, without the controlword, and {}",
                   no_power),
       std::string(kOtherWay)));
+}
+
+/// Those that energise among values that a drive does not hold yet.
+std::vector<std::pair<ObjectAddress, const drive::PowerParameter*>> power_values(
+    const show::Desk& desk, const session::Values& present, const session::Values& wanted) {
+  std::vector<std::pair<ObjectAddress, const drive::PowerParameter*>> out;
+  for (const auto& [object, data] : wanted) {
+    const auto now = present.find(object);
+    if (now != present.end() && now->second == data) continue;
+    if (const auto* parameter = drive::power_parameter(desk.profile, object, data))
+      out.emplace_back(object, parameter);
+  }
+  return out;
+}
+
+void tell_power(show::Desk& desk, std::uint8_t node, const drive::PowerParameter& parameter) {
+  desk.notices.push_back(fmt::format(
+      "node {}: its motor may get power or move without the controlword, and servoctl neither supervises nor "
+      "stops it: `param set {}={} -n {}`",
+      node, parameter.end, parameter.value, node));
 }
 
 /// What the write does beside changing a value; empty when nothing, as for a password.
@@ -107,11 +130,32 @@ void tell_power_parameters(show::Desk& desk, std::span<const Change> changes,
     if (parameter == nullptr || is_told_not_at_rest(desk, change.target.address) ||
         session::write_end(written[i], change.target.address) == session::WriteEnd::not_written)
       continue;
-    desk.notices.push_back(fmt::format(
-        "node {}: its motor may get power or move without the controlword, and servoctl neither supervises nor "
-        "stops it: `param set {}={} -n {}`",
-        change.node, parameter->end, parameter->value, change.node));
+    tell_power(desk, change.node, *parameter);
   }
+}
+
+std::string power_question(const show::Desk& desk, std::uint8_t node, const session::Values& present,
+                           const session::Values& wanted) {
+  std::string at_once, after_restart;
+  for (const auto& [object, parameter] : power_values(desk, present, wanted)) {
+    const auto target = drive::target_at(desk.profile, object);
+    const bool waits = drive::meaning(target, node).effect == od::Effect::restart;
+    append(waits ? after_restart : at_once, name_of(target));
+  }
+  std::string out;
+  if (!at_once.empty())
+    out += fmt::format(
+        " {} may energise the motor, or set it in motion, without the controlword; `disable` may not stop it.",
+        at_once);
+  if (!after_restart.empty())
+    out += fmt::format(" {} may energise the motor without the controlword after a restart of the drive.",
+                       after_restart);
+  return out;
+}
+
+void tell_power_values(show::Desk& desk, std::uint8_t node, const session::Values& present,
+                       const session::Values& wanted) {
+  for (const auto& value : power_values(desk, present, wanted)) tell_power(desk, node, *value.second);
 }
 
 }  // namespace servoctl::settings

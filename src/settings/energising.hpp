@@ -1,9 +1,11 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "drive/power_parameter.hpp"
 #include "session/write.hpp"
+#include "session/write_plan.hpp"
 #include "settings/change.hpp"
 #include "show/desk.hpp"
 
@@ -27,5 +29,12 @@ Result<void> check_writable(const show::Desk& desk, std::uint8_t node, ObjectAdd
 /// without the controlword: the way out of servoctl is that of 6040h. `written` is in the order of `changes`.
 void tell_power_parameters(show::Desk& desk, std::span<const Change> changes,
                            std::span<const Result<session::Written>> written);
+
+/// The same of a drive that is given `wanted` in place of `present`: sentences for a question, with a blank
+/// before each, empty where nothing energises; and the notices.
+std::string power_question(const show::Desk& desk, std::uint8_t node, const session::Values& present,
+                           const session::Values& wanted);
+void tell_power_values(show::Desk& desk, std::uint8_t node, const session::Values& present,
+                       const session::Values& wanted);
 
 }  // namespace servoctl::settings

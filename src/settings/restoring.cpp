@@ -8,6 +8,7 @@
 #include "settings/before_file.hpp"
 #include "settings/change.hpp"
 #include "settings/comparison.hpp"
+#include "settings/energising.hpp"
 #include "settings/interrupted_restore.hpp"
 #include "settings/restore_journal.hpp"
 #include "settings/restore_keeping.hpp"
@@ -85,7 +86,8 @@ class Restoring {
       end_ = RestoreEnd::planned;
       return planned(target);
     }
-    auto agreed = desk_->confirm(question(comparison.different));
+    auto agreed = desk_->confirm(question(comparison.different) +
+                                 power_question(*desk_, node_, target.present(), target.wanted()));
     if (agreed) agreed = target.check_standstill();
     if (!agreed) return fail(agreed.error());
     differs_ = comparison.different > 0 || options_.resume;
@@ -187,6 +189,7 @@ class Restoring {
                          {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
     end_ = end_of(outcome);
     in_flash_ = outcome.in_flash;
+    if (end_ != RestoreEnd::rolled_back) tell_power_values(*desk_, node_, target.present(), target.wanted());
     for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
     if (differs_)
       desk_->notices.push_back(

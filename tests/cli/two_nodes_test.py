@@ -127,4 +127,27 @@ with sims(bus, "gsd600@1"):
     check(f"a second node ends the motion\n{told}", jog.returncode != 0 and time.monotonic() - begun < 6)
     check(f"it is named\n{told}", "two nodes answer under this node-ID" in told)
     check(f"which of two is without power is not known\n{told}", "THE FINAL STATE COULD NOT BE VERIFIED" in told)
+
+# LSS takes one of two by its identity, never by their number; a reset by number reaches both, whoever has power.
+bus = f"local:lss-node-{os.getpid()}"
+identity = ["--vendor", "0x445653", "--product", "1", "--revision", "1", "--serial", "1"]
+with sims(bus, "gsd600@1?delay=2ms"):
+    answer = run(bus, "enable", "-n", "1", "-d", "gsd600", "--yes")
+    check(f"one of two: it is energised\n{answer.stderr}", answer.returncode == 0)
+    with sims(bus, "sv2@1?lss"):
+        for words in (["inquire"], ["set-node", "5", "--yes"], ["set-bitrate", "500k", "--yes"], ["store", "--yes"]):
+            answer = run(bus, "lss", *words, "-n", "1")
+            check(f"one of two: lss {words[0]} by their number is refused\n{answer.stderr}",
+                  answer.returncode == 8 and "two nodes answer" in answer.stderr and "--serial" in answer.stderr)
+        for words in (["set-node", "5"], ["set-bitrate", "500k", "--activate", "1s"]):
+            answer = run(bus, "lss", *words, *identity, "--yes")
+            check(f"one of two: lss {words[0]} is refused while the other one is energised\n{answer.stderr}",
+                  answer.returncode == 8 and "two drives have this node-ID, and one is energised" in answer.stderr)
+        run(bus, "disable", "-n", "1", "-d", "gsd600")
+        answer = run(bus, "lss", "set-node", "5", *identity)
+        check(f"one of two: the question names the other one\n{answer.stderr}", "Another drive has this node-ID too" in answer.stderr)
+        answer = run(bus, "lss", "set-node", "5", *identity, "--yes")
+        check(f"one of two: without power it is the way out\n{answer.stdout}{answer.stderr}", answer.returncode == 0 and "moved" in answer.stdout)
+        answer = run(bus, "scan")
+        check(f"one of two: each has its own number now\n{answer.stdout}{answer.stderr}", answer.returncode == 0 and "two nodes" not in answer.stderr)
 finish()

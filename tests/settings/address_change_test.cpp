@@ -69,72 +69,6 @@ TEST(AddressChange, ALockedParameterNamesThePassword) {
   EXPECT_EQ(world.held(0, "Fn_9A"), 3U);
 }
 
-TEST(AddressChange, ANodeIdThatAnswersIsRefused) {
-  AddressWorld world("gsd600", {3, 5});
-  const std::uint8_t to[] = {5};
-  const auto free = refuse_taken(world.desk, to);
-  ASSERT_FALSE(free);
-  EXPECT_EQ(free.error().code, Errc::refused);
-  EXPECT_NE(free.error().message.find("it answers"), std::string::npos) << free.error().message;
-}
-
-TEST(AddressChange, ANodeIdWhoseNodeOnlySendsHeartbeatsIsRefused) {
-  AddressWorld world("gsd600", {3, 5});
-  ASSERT_TRUE(world.session->download(5, objects::kProducerHeartbeat, store_le(1000, 2)));
-  (void)world.bus.send(*can::parse_frame("000#0205"));
-  const std::uint8_t to[] = {5};
-  const auto free = refuse_taken(world.desk, to);
-  ASSERT_FALSE(free);
-  EXPECT_NE(free.error().message.find("it sends heartbeats"), std::string::npos) << free.error().message;
-}
-
-TEST(AddressChange, ANodeIdWhoseNodeIsStoppedIsRefused) {
-  AddressWorld world("gsd600", {3, 5});
-  (void)world.session->wait([] { return false; }, world.session->now() + 1s);
-  (void)world.bus.send(*can::parse_frame("000#0205"));
-  const std::uint8_t to[] = {5};
-  const auto free = refuse_taken(world.desk, to);
-  ASSERT_FALSE(free);
-  EXPECT_EQ(free.error().code, Errc::refused);
-  EXPECT_NE(free.error().message.find("it says that it is stopped (NMT)"), std::string::npos)
-      << free.error().message;
-}
-
-/// Node guarding begins with the first request: a drive that guards its master's life would miss the next.
-TEST(AddressChange, ADryRunAsksNobodyByNodeGuarding) {
-  AddressWorld world("gsd600", {3});
-  world.desk.dry_run = true;
-  const std::uint8_t to[] = {5};
-  EXPECT_TRUE(refuse_taken(world.desk, to));
-  EXPECT_EQ(world.count("705#R1"), 0U);
-  world.desk.dry_run = false;
-  EXPECT_TRUE(refuse_taken(world.desk, to));
-  EXPECT_EQ(world.count("705#R1"), 1U);
-}
-
-TEST(AddressChange, ABusWithoutRemoteFramesSaysWhatWasNotLookedFor) {
-  AddressWorld world("gsd600", {3});
-  session::Session session(std::make_unique<HookedBus>(world.bus, world.hooks, world.sent),
-                           "socketcand://pi/can0", {});
-  world.desk.session = &session;
-  const std::uint8_t to[] = {5};
-  for (int i = 0; i < 2; ++i) EXPECT_TRUE(refuse_taken(world.desk, to));
-  EXPECT_EQ(world.notices(),
-            "socketcand://pi/can0 carries no remote frames: nodes that are stopped (NMT) were not looked "
-            "for\n");
-  EXPECT_EQ(world.count("705#R1"), 0U);
-}
-
-TEST(AddressChange, TheNodeIdOfServoctlsOwnHeartbeatIsRefused) {
-  AddressWorld world("gsd600", {3});
-  ASSERT_TRUE(world.session->network().arm_watchdog(
-      3, {.kind = session::LifeSign::Kind::heartbeat, .producer = 9, .period = 100ms}));
-  const std::uint8_t to[] = {9};
-  EXPECT_FALSE(refuse_taken(world.desk, to));
-  const std::uint8_t other[] = {10};
-  EXPECT_TRUE(refuse_taken(world.desk, other));
-}
-
 TEST(AddressChange, TheNodeThatItHasAlreadyIsNothingToDo) {
   AddressWorld world("gsd600", {3});
   const auto outcome = move_to(world, 3, 3);
@@ -272,6 +206,29 @@ TEST(AddressChange, BothValuesAreWrittenOrNone) {
   EXPECT_EQ(world.held(0, "Pn0048"), 8U);
   EXPECT_EQ(world.held(0, "Pn0049"), 3U) << "the first was written, and is put back";
   EXPECT_EQ(world.count("000#8103"), 0U);
+}
+
+/// Put back with the switch at the flash: a trial would be kept in place of what the flash held.
+TEST(AddressChange, WhatWasPutBackIntoTheFlashOfADriveThatWorkedInItsRamIsTold) {
+  for (const bool trial : {false, true}) {
+    AddressWorld world("ts", {3});
+    const auto set = [&](const char* name, std::uint64_t value) {
+      const auto place = *drive::place_of(world.profile, name);
+      const auto size = world.session->upload(3, place)->size();
+      ASSERT_TRUE(world.session->download(3, place, store_le(value, size))) << name;
+    };
+    set("Fn_3F", 9876);
+    set("Fn_99", 1);
+    if (trial) set("Fn_9A", 7);
+    const auto change = plan_address(world.desk, 3, {.node = 5, .bitrate = 250'000});
+    ASSERT_TRUE(change) << change.error().message;
+    world.drives[0]->misbehaviour().refused.insert(drive::place_of(world.profile, "Fn_9C")->index);
+    const auto outcome = change_address(world.desk, *change, {.unlock = true});
+    ASSERT_TRUE(outcome.error);
+    EXPECT_EQ(outcome.end, trial ? AddressEnd::failed : AddressEnd::as_before) << outcome.error->message;
+    EXPECT_EQ(outcome.error->message.find("its flash was not put back") != std::string::npos, trial)
+        << outcome.error->message;
+  }
 }
 
 TEST(AddressChange, COBIDsThatAreStoredWithTheOldNodeAreNamed) {

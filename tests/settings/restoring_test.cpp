@@ -139,5 +139,25 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"sv2", {{"2001h:1", 60}, {"2001h:2", 90}}, false}),
     [](const auto& each) { return std::string(each.param.family); });
 
+/// As `param set` does, which asks for it alone.
+TEST(Restoring, NamesWhatMayEnergiseTheMotorInItsQuestion) {
+  World harmless({"gsd600", {{"Pn0214", 450}}, false});
+  ASSERT_TRUE(harmless.put({}));
+  ASSERT_EQ(harmless.questions.size(), 1U);
+  EXPECT_EQ(harmless.questions[0], "Write 1 value of drive.json to node 1?");
+  World world({"gsd600", {{"Pn0600", 1}, {"Pn0214", 450}}, false});
+  ASSERT_TRUE(world.put({}));
+  ASSERT_EQ(world.questions.size(), 1U);
+  EXPECT_NE(world.questions[0].find("Pn0600"), std::string::npos) << world.questions[0];
+  EXPECT_NE(world.questions[0].find("may energise the motor"), std::string::npos) << world.questions[0];
+  const auto told = std::count_if(world.notices.begin(), world.notices.end(), [](const std::string& notice) {
+    return notice.find("`param set Pn0600=0 -n 1`") != std::string::npos;
+  });
+  EXPECT_EQ(told, 1);
+  // What it holds already is no news.
+  ASSERT_TRUE(world.put({}));
+  EXPECT_EQ(world.questions.size(), 1U);
+}
+
 }  // namespace
 }  // namespace servoctl::settings

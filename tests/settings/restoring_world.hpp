@@ -40,6 +40,19 @@ struct Case {
   bool unlock;
 };
 
+/// Says yes to everything, and remembers what it was asked.
+class Asked final : public show::Audience {
+ public:
+  explicit Asked(std::vector<std::string>& questions) : questions_(&questions) {}
+  Result<void> confirm(std::string_view question) override {
+    questions_->emplace_back(question);
+    return {};
+  }
+
+ private:
+  std::vector<std::string>* questions_;
+};
+
 /// A drive, a backup that differs from it, and a folder for files, which all that live at a time have in
 /// common.
 class World {
@@ -112,8 +125,8 @@ class World {
     desk.session = &session;
     desk.profile = &profile_;
     desk.chinese = chinese;
-    show::Willing willing;
-    desk.audience = &willing;
+    Asked asked(questions);
+    desk.audience = &asked;
     auto done = put_into(desk, what, title, 1, saved_in, options, undoes);
     notices = desk.notices;
     errors = desk.errors;
@@ -155,6 +168,7 @@ class World {
   Backup backup;
   session::Values before;
   session::Values means_before;
+  std::vector<std::string> questions;
   std::vector<std::string> notices;
   std::vector<Error> errors;
   bool chinese = false;
