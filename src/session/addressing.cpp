@@ -4,10 +4,14 @@
 #include <set>
 
 #include "canopen/cob_id.hpp"
+#include "canopen/node_id.hpp"
 #include "canopen/node_list.hpp"
+#include "canopen/sdo_frame.hpp"
+#include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/hearing.hpp"
+#include "session/identify.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::session {
@@ -65,7 +69,37 @@ bool has_answered(const Result<Bytes>& answer) {
   return answer || answer.error().code == Errc::sdo_abort || answer.error().code == Errc::protocol;
 }
 
+bool says_energised(const can::Frame& frame, std::uint8_t node) {
+  constexpr std::uint8_t kReadAnswer = 2;  // CiA 301, 7.2.4.3.6: initiate upload response.
+  if (frame.extended || frame.error || frame.remote || frame.size != 8) return false;
+  if (frame.id != canopen::kSdoAnswer + node || frame.data[0] >> 5U != kReadAnswer) return false;
+  if (canopen::sdo_object(frame) != objects::kStatusword) return false;
+  return drive::is_energised(
+      drive::decode_state(static_cast<std::uint16_t>(frame.data[4] | frame.data[5] << 8U)));
+}
+
 }  // namespace
+
+std::string sharers_of(Session& session, std::uint8_t node) {
+  auto* can = session.can();
+  return can != nullptr && node >= canopen::kFirstNode && node <= canopen::kLastNode
+             ? can->duplicates().noticed(node)
+             : std::string();
+}
+
+Result<bool> is_energised(Session& session, std::uint8_t node) {
+  bool heard = false;
+  const Hearing hearing(
+      session, [&](const can::Frame& frame, TimePoint) { heard = heard || says_energised(frame, node); });
+  const auto word = session.upload(node, objects::kStatusword);
+  if (word && drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
+    return true;
+  if (!heard && !sharers_of(session, node).empty())
+    if (const auto waited = session.wait([&] { return heard; }, session.now() + kBeforeMotion); !waited)
+      return fail(waited.error());
+  if (heard) return true;
+  return word || word.error().code == Errc::sdo_abort ? Result<bool>(false) : fail(word.error());
+}
 
 Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,
                                                          std::span<const std::uint8_t> nodes,

@@ -37,6 +37,13 @@ bool guards_nodes(Session& session);
 Result<std::vector<std::uint8_t>> nodes_beside(Session& session, std::span<const std::uint8_t> nodes,
                                                const AddressLook& look = {});
 
+/// What showed that two nodes have this number, in words; empty: nothing. Of no node-ID: empty.
+std::string sharers_of(Session& session, std::uint8_t node);
+
+/// Whether the drive has power on its motor, and where two were noticed under this number, whether either
+/// has; one that has no statusword has none. Else as Session::upload().
+Result<bool> is_energised(Session& session, std::uint8_t node);
+
 /// Sends the node the NMT command that puts a new address in force; nothing for a power cycle. What was heard
 /// of it is forgotten: another may answer under its number from now on.
 Result<void> restart_node(Session& session, std::uint8_t node, drive::NmtRules::Restart how);

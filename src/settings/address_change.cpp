@@ -4,16 +4,12 @@
 #include <algorithm>
 #include <utility>
 
-#include "canopen/cob_id.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/node_list.hpp"
-#include "canopen/sdo_frame.hpp"
 #include "drive/bitrate.hpp"
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/can_network.hpp"
-#include "session/hearing.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
@@ -103,20 +99,6 @@ std::vector<session::PlannedMessage> messages_to(const AddressChange& change,
   return out;
 }
 
-bool is_shared(session::Session& session, std::uint8_t node) {
-  auto* can = session.can();
-  return can != nullptr && !can->duplicates().noticed(node).empty();
-}
-
-bool says_energised(const can::Frame& frame, std::uint8_t node) {
-  constexpr std::uint8_t kReadAnswer = 2;  // CiA 301, 7.2.4.3.6: initiate upload response.
-  if (frame.extended || frame.error || frame.remote || frame.size != 8) return false;
-  if (frame.id != canopen::kSdoAnswer + node || frame.data[0] >> 5U != kReadAnswer) return false;
-  if (canopen::sdo_object(frame) != objects::kStatusword) return false;
-  return drive::is_energised(
-      drive::decode_state(static_cast<std::uint16_t>(frame.data[4] | frame.data[5] << 8U)));
-}
-
 Result<void> rehearse(show::Desk& desk, const AddressChange& change, bool unlock,
                       session::Rehearsal& rehearsal) {
   if (change.writes.empty()) return {};
@@ -167,23 +149,12 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
 }
 
 Result<void> refuse_energised(session::Session& session, std::uint8_t node, std::string_view what) {
-  bool energised = false;
-  const session::Hearing hearing(session, [&](const can::Frame& frame, TimePoint) {
-    energised = energised || says_energised(frame, node);
-  });
-  const auto word = session.upload(node, objects::kStatusword);
-  if (word)
-    energised =
-        energised || drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word))));
-  const bool shared = is_shared(session, node);
-  if (shared && !energised)
-    if (const auto waited = session.wait([&] { return energised; }, session.now() + session::kBeforeMotion);
-        !waited)
-      return fail(waited.error());
-  if (!energised) return word || word.error().code == Errc::sdo_abort ? Result<void>() : fail(word.error());
+  const auto energised = session::is_energised(session, node);
+  if (!energised) return fail(energised.error());
+  if (!*energised) return {};
   return fail(drive_error(
       Errc::refused, node,
-      shared
+      !session::sharers_of(session, node).empty()
           ? fmt::format("two drives have this node-ID, and one is energised: {} cannot be changed now", what)
           : fmt::format("it is energised: {} cannot be changed now", what),
       fmt::format("`disable -n {}` de-energises it; make sure that the load is held", node)));

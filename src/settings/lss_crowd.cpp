@@ -46,7 +46,7 @@ Result<Crowd> crowd_of(session::Session& session, const LssBitrateChange& change
 /// A number of the crowd that somebody else has, too.
 std::optional<std::uint8_t> node_of_two(session::Session& session, const Crowd& crowd) {
   for (const auto node : crowd.nodes)
-    if (!session::refuse_duplicate(session, node) && std::ranges::count(crowd.nodes, node) < 2) return node;
+    if (!session::sharers_of(session, node).empty() && std::ranges::count(crowd.nodes, node) < 2) return node;
   return std::nullopt;
 }
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "canopen/node_id.hpp"
-#include "session/can_network.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
 #include "session/scan.hpp"
@@ -180,9 +179,7 @@ Result<LssSlave> look_at_lss_slave(show::Desk& desk, const LssNodeChange& change
 bool has_lss_node(const LssSlave& slave, const LssNodeChange& change) { return slave.node == change.to; }
 
 std::string shared_lss_node(session::Session& session, const LssSlave& slave) {
-  auto* can = session.can();
-  const bool has_node = slave.node && !slave.is_unconfigured();
-  return can != nullptr && has_node ? can->duplicates().noticed(*slave.node) : std::string();
+  return session::sharers_of(session, slave.node.value_or(kUnconfigured));
 }
 
 LssNodeOutcome give_lss_node(show::Desk& desk, const LssSlave& slave, const LssNodeChange& change) {
