@@ -145,11 +145,12 @@ std::string power_question(const show::Desk& desk, std::uint8_t node, const sess
   std::string out;
   if (!at_once.empty())
     out += fmt::format(
-        " {} may energise the motor, or set it in motion, without the controlword; `disable` may not stop it.",
+        " Without the controlword the motor may be energised, or set in motion, by {}; `disable` may not stop it.",
         at_once);
   if (!after_restart.empty())
-    out += fmt::format(" {} may energise the motor without the controlword after a restart of the drive.",
-                       after_restart);
+    out +=
+        fmt::format(" Without the controlword the motor may be energised after a restart of the drive by {}.",
+                    after_restart);
   return out;
 }
 

@@ -149,7 +149,7 @@ TEST(Restoring, NamesWhatMayEnergiseTheMotorInItsQuestion) {
   ASSERT_TRUE(world.put({}));
   ASSERT_EQ(world.questions.size(), 1U);
   EXPECT_NE(world.questions[0].find("Pn0600"), std::string::npos) << world.questions[0];
-  EXPECT_NE(world.questions[0].find("may energise the motor"), std::string::npos) << world.questions[0];
+  EXPECT_NE(world.questions[0].find("the motor may be energised"), std::string::npos) << world.questions[0];
   const auto told = std::count_if(world.notices.begin(), world.notices.end(), [](const std::string& notice) {
     return notice.find("`param set Pn0600=0 -n 1`") != std::string::npos;
   });
