@@ -20,7 +20,8 @@ Result<AddressJournal> begin_address_journal(const std::filesystem::path& plan, 
   if (!*found && resume)
     return fail(Errc::usage, fmt::format("there is nothing to resume: {} does not exist", path.string()),
                 "leave --resume out");
-  if (!*found) return AddressJournal{.checksum = std::move(checksum)};
+  if (!*found)
+    return AddressJournal{.checksum = std::move(checksum), .steps = {}, .families = {}, .drives = {}};
   if ((*found)->checksum != checksum || (*found)->drives.size() != rows)
     return fail(Errc::refused, fmt::format("{} has changed since it was interrupted", plan.string()),
                 "resuming needs the plan as it was");

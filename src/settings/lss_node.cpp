@@ -30,7 +30,7 @@ class LssNodeRun {
   LssNodeOutcome run() {
     const bool stays = has_lss_node(*slave_, *change_);
     if (stays && !change_->keep) {
-      out_ = {.result = "nothing to do", .taken = true, .done = true};
+      out_ = {.result = "nothing to do", .taken = true, .done = true, .kept = {}, .error = {}};
       return std::move(out_);
     }
     {
