@@ -125,11 +125,12 @@ class Monitor {
   void take_alarms() {
     (void)context_->session->can()->take_reports();
     for (const auto& event : context_->session->take_events()) {
-      if (!is_loss(event)) continue;
-      ++lost_;
+      const bool doubled = std::holds_alternative<NodeEvent::Doubled>(event.what);
+      if (!doubled && !is_loss(event)) continue;
+      if (!doubled) ++lost_;
       const auto text =
           fmt::format("ALARM {}", show::event_text(event, context_->profile, context_->chinese));
-      log_->remark(event.time - begin_, "alarm", event.node, text, "heartbeat-lost");
+      log_->remark(event.time - begin_, "alarm", event.node, text, doubled ? "doubled" : "heartbeat-lost");
     }
   }
 
@@ -188,7 +189,7 @@ const Command kMonitor{
     .details =
         "One line per frame: NMT, SYNC, TIME, EMCY in the family's words, PDOs with the objects they carry, "
         "SDO with names, values and aborts, heartbeats, boot-ups, node guarding; and an ALARM if a node's "
-        "heartbeat stops. It sends nothing, except with --ask: then it first reads the PDO mapping of the "
+        "heartbeat stops, or two nodes have one number. It sends nothing, except with --ask: then it first reads the PDO mapping of the "
         "nodes given by -n. Otherwise PDOs are decoded by a mapping seen on the bus meanwhile, or by the "
         "family's (-d) factory mapping. With --table a terminal shows one row for each CAN-ID, with its number of "
         "frames, their mean period in ms, and what the last one means (keys: space pauses, s sorts, q quits). A bus that is lost is waited for and told by an ALARM, its return too. At the end (--for, or Ctrl-C) it shows "

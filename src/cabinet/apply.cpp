@@ -95,8 +95,7 @@ class Applying {
                            "`disable` de-energises it; make sure that the load is held");
       if (need.kind == AxisNeed::Kind::password && !options_->unlock && has_password(*run.station.profile))
         return drive_error(Errc::refused, node,
-                           fmt::format("{} {} behind its password", fmt::join(need.names, ", "),
-                                       need.names.size() == 1 ? "is" : "are"),
+                           fmt::format("its password locks {}", fmt::join(need.names, ", ")),
                            "add --unlock, which gives it and takes it back after");
     }
     return std::nullopt;

@@ -58,6 +58,18 @@ std::string to_string(const AxisNeed& need) {
   return {};
 }
 
+std::string sentence(const AxisNeed& need) {
+  const auto names = need.names.empty() ? std::string() : fmt::format(" ({})", fmt::join(need.names, ", "));
+  switch (need.kind) {
+    case AxisNeed::Kind::restart: return "needs a restart" + names;
+    case AxisNeed::Kind::standstill: return "needs standstill" + names;
+    case AxisNeed::Kind::password: return "needs the password: --unlock" + names;
+    case AxisNeed::Kind::state: return "needs Pre-operational while its PDOs change";
+    case AxisNeed::Kind::power: return "needs to be de-energised: `disable`";
+  }
+  return {};
+}
+
 bool has_password(const drive::Profile& profile) {
   const auto& store = profile.rules.store;
   return drive::place_of(profile, store.unlock).has_value() && store.unlock_open.has_value();

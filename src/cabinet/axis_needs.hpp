@@ -22,6 +22,8 @@ struct AxisNeed {
 std::string_view name(AxisNeed::Kind kind);
 /// `a restart (Pn0032, Pn0201)`.
 std::string to_string(const AxisNeed& need);
+/// `needs a restart (Pn0032, Pn0201)`.
+std::string sentence(const AxisNeed& need);
 
 /// Whether the family has a password that can be given over the bus.
 bool has_password(const drive::Profile& profile);

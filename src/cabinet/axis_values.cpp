@@ -157,10 +157,9 @@ class Wanted {
   Result<void> add_heartbeat() {
     const auto& profile = *desk_->profile;
     if (profile.dictionary.find(objects::kProducerHeartbeat) == nullptr)
-      return at_place(
-          *cabinet_, *axis_, axis_->heartbeat_at,
-          make_error(Errc::file, fmt::format("{} has no heartbeat (1017h)", profile.family),
-                     "leave `heartbeat` out"));
+      return at_place(*cabinet_, *axis_, axis_->heartbeat_at,
+                      make_error(Errc::file, fmt::format("{} has no heartbeat (1017h)", profile.family),
+                                 "leave `heartbeat` out"));
     const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat);
     return add_parameter({to_string(objects::kProducerHeartbeat), fmt::format("{}", milliseconds.count()),
                           axis_->heartbeat_at});
@@ -175,19 +174,18 @@ class Wanted {
 
   Result<void> add(ObjectAddress object, const Bytes& data, Place place) {
     const auto target = drive::target_at(desk_->profile, object);
-    const auto refuse = [&](std::string_view why, std::string hint) {
-      return at_place(
-          *cabinet_, *axis_, place,
-          make_error(Errc::file, fmt::format("{} {}", settings::name_of(target), why), std::move(hint)));
+    const auto name = settings::name_of(target);
+    const auto refuse = [&](std::string why, std::string hint) {
+      return at_place(*cabinet_, *axis_, place, make_error(Errc::file, std::move(why), std::move(hint)));
     };
     if (settings::is_address(desk_->profile, object))
-      return refuse("is node-ID or bitrate of the drive",
+      return refuse(fmt::format("{} is node-ID or bitrate of the drive", name),
                     "`node` and `bitrate` say them; they are not written as parameters");
     const auto first = std::find_if(out_.entries.begin(), out_.entries.end(),
                                     [&](const auto& entry) { return entry.object == object; });
     if (first != out_.entries.end()) {
       if (*first->bytes == data) return {};
-      return refuse(fmt::format("has another value in line {}", first->line), "remove one of them");
+      return refuse(fmt::format("{} has another value in line {}", name, first->line), "remove one of them");
     }
     add_entry(object, data, place);
     return {};

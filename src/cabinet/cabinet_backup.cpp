@@ -9,6 +9,7 @@
 #include "base/file.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/cabinet_plan.hpp"
+#include "report/told.hpp"
 #include "session/snapshot.hpp"
 #include "settings/backup_file.hpp"
 #include "show/records.hpp"
@@ -98,7 +99,7 @@ Result<void> write_all(const fs::path& folder, const Cabinet& cabinet, std::span
   return write_file_atomically(folder / "cabinet.toml", *file);
 }
 
-Value table_of(std::span<const SavedAxis> axes, const fs::path& folder) {
+Value table_of(const show::Desk& desk, std::span<const SavedAxis> axes, const fs::path& folder) {
   report::Table out;
   out.columns = {{"axis"},
                  {"node"},
@@ -108,10 +109,11 @@ Value table_of(std::span<const SavedAxis> axes, const fs::path& folder) {
                  {"left_out", "left out"},
                  {"error", "", report::Show::json}};
   for (const auto& saved : axes)
-    out.rows.push_back(
-        {saved.axis->name, saved.axis->node, saved.axis->family,
-         saved.text ? Value((folder / (saved.axis->name + ".json")).string()) : Value("not saved"),
-         saved.values, saved.left_out, saved.text ? Value() : show::error_record(saved.text.error())});
+    out.rows.push_back({saved.axis->name, saved.axis->node, saved.axis->family,
+                        saved.text ? (folder / (saved.axis->name + ".json")).string()
+                                   : report::told(desk.speaks_chinese(), "not saved"),
+                        saved.values, saved.left_out,
+                        saved.text ? Value() : show::error_record(saved.text.error())});
   return Value(std::move(out));
 }
 
@@ -139,7 +141,7 @@ Result<Value> back_up_cabinet(show::Desk& desk, const Cabinet& cabinet, std::spa
   if (!written) return fail(written.error());
   const auto folder = free_name(parent);
   if (const auto named = making.name(folder); !named) return fail(named.error());
-  return table_of(axes, folder);
+  return table_of(desk, axes, folder);
 }
 
 }  // namespace servoctl::cabinet

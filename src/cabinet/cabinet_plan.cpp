@@ -159,7 +159,7 @@ void add_text(const PlannedAxis& look, Record& out) {
     out.push_back({look.axis->name, "nothing to do", Show::text, title});
   } else if (const auto* table = std::get_if<Table>(&look.plan->differences.data())) {
     auto shown = *table;
-    for (const auto& need : look.plan->needs) shown.below.push_back("needs " + to_string(need));
+    for (const auto& need : look.plan->needs) shown.below.push_back(sentence(need));
     out.push_back({look.axis->name, std::move(shown), Show::text, title});
   }
   if (!look.plan->unlisted.is_null())

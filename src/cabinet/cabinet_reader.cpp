@@ -121,7 +121,7 @@ class CabinetReader {
             read_part(*one, name_, std::string_view(key) == "family" ? PartOf::family : PartOf::group);
         if (!part) return fail(part.error());
         if (place == &groups_)
-          if (const auto good = check_name(name, "group", *one); !good) return good;
+          if (const auto good = check_name(name, "a group", *one); !good) return good;
         place->emplace(name, std::move(*part));
       }
     }
@@ -153,7 +153,7 @@ class CabinetReader {
     if (names->size() > 1 && part.serial)
       return fail_at(table, fmt::format("axis {}: each drive has a serial number of its own", pattern));
     for (std::size_t i = 0; i < names->size(); ++i) {
-      if (const auto good = check_name((*names)[i], "axis", table); !good) return good;
+      if (const auto good = check_name((*names)[i], "an axis", table); !good) return good;
       auto axis = make_axis((*names)[i], table, part);
       if (!axis) return fail(axis.error());
       axis->node = part.nodes[i];
@@ -234,8 +234,7 @@ class CabinetReader {
 
   Result<void> check_name(const std::string& name, std::string_view what, const toml::table& table) {
     if (!is_name(name))
-      return fail_at(table,
-                     fmt::format("'{}' cannot be the name of {} {}", name, what == "axis" ? "an" : "a", what),
+      return fail_at(table, fmt::format("'{}' cannot be the name of {}", name, what),
                      "a letter first; no space, comma, dot or quote; not `all`");
     if (!names_.insert(name).second)
       return fail_at(table, fmt::format("'{}' is the name of two things", name),

@@ -91,8 +91,9 @@ Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Fil
   if (!socket && (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT))
     return fail(
         Errc::bus, fmt::format("cannot open {}: no SocketCAN in the kernel", name),
-        "load it with `sudo modprobe can-raw`, or use a bus that needs no kernel CAN: local:NAME between "
-        "processes of this machine, or sim: for simulated drives");
+        "load it with `sudo modprobe can-raw`, or use a bus that needs no kernel CAN: slcan:PORT@500k for an "
+        "adapter that is a serial port, local:NAME between processes of this machine, or sim: for simulated "
+        "drives");
   if (!socket) return interface_cannot_open(name, errno);
   const auto index = interface_index(socket.get(), name);
   if (!index) return fail(index.error());

@@ -185,10 +185,10 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
   const bool looks = command.effect_with(arguments) <= command::Effect::reads && settings.nodes.empty();
   if (looks && !makes_file) return out;
   std::vector<std::string> names;
-  for (const auto& bus : cabinet.buses) names.push_back("--bus " + bus.name);
+  for (const auto& bus : cabinet.buses) names.push_back(fmt::format("`--bus {}`", bus.name));
   return fail(Errc::usage,
               fmt::format("which bus? {} has {}", cabinet.file.filename().string(), cabinet.buses.size()),
-              "add " + one_of(names) + ", or name the axes");
+              fmt::format("add {}, or name the axes", one_of(names)));
 }
 
 std::vector<OptionOfAxis> add_axis_options(std::span<const Axis* const> axes, const command::Command& command,

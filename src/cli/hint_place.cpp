@@ -1,8 +1,10 @@
 #include "cli/hint_place.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <vector>
 
+#include "cli/settings.hpp"
 #include "cli/words.hpp"
 
 namespace servoctl::cli {
@@ -29,6 +31,21 @@ std::string quoted(const std::string& word) {
   return out == word && special ? "'" + word + "'" : out;
 }
 
+/// Where a command is told its bus as a word.
+constexpr std::string_view kBusWord = "bus";
+/// Behind it stands what mends a finding, in the rows that people read.
+constexpr std::string_view kMend = "  mend: ";
+
+/// Whether the command is for nodes that the line does not name, so that the family of the line may not be
+/// theirs.
+bool is_elsewhere(const ParsedLine& line, const ParsedLine& named) {
+  if (!line.arguments.has(kNode.option) || !named.arguments.has(kNode.option)) return false;
+  const auto of_line = parse_nodes(line.arguments.text(kNode.option));
+  const auto of_hint = parse_nodes(named.arguments.text(kNode.option));
+  if (!of_line || !of_hint || of_line->front() == 0) return false;
+  return !std::includes(of_line->begin(), of_line->end(), of_hint->begin(), of_hint->end());
+}
+
 void add(const Place& place, const ParsedLine& line, const ParsedLine& named,
          std::vector<std::string>& words) {
   if (!line.arguments.has(place.option) || named.arguments.has(place.option)) return;
@@ -42,14 +59,47 @@ std::string placed(std::string_view command, const ParsedLine& line) {
   const auto named = parse_line(*words);
   if (!is_whole(named)) return std::string(command);
   const auto needs = named->command->needs;
+  const bool same = named->command == line.command;
   std::vector<std::string> more;
   if (includes(needs, Needs::node)) add(kNode, line, *named, more);
-  if (includes(needs, Needs::dictionary)) add(kDrive, line, *named, more);
-  if (includes(needs, Needs::bus)) add(kBus, line, *named, more);
+  if (includes(needs, Needs::dictionary) && !is_elsewhere(line, *named)) add(kDrive, line, *named, more);
+  if ((includes(needs, Needs::bus) || same) && !named->arguments.has(kBusWord)) add(kBus, line, *named, more);
   if (includes(needs, Needs::bus) || named->command->path.starts_with("cabinet"))
     add(kCabinet, line, *named, more);
   return more.empty() ? std::string(command)
                       : std::string(command) + " " + fmt::to_string(fmt::join(more, " "));
+}
+
+/// The line as if it had been for this bus.
+ParsedLine at_bus(const ParsedLine& line, const std::string& bus) {
+  auto out = line;
+  if (!bus.empty() && !out.arguments.has(kBus.option)) out.arguments.add(kBus.option, bus);
+  return out;
+}
+
+/// What mends the findings of `doctor` is done at their bus. It is put into Chinese before it has a place, as
+/// hints are: the catalogue knows it without one.
+void place_mends(report::Table& table, const ParsedLine& line, bool chinese) {
+  if (table.columns.empty() || table.columns.back().key != "finding") return;
+  auto here = line;
+  for (auto& row : table.rows) {
+    if (row.empty()) continue;
+    const auto* bus = std::get_if<std::string>(&row.front().data());
+    if (bus != nullptr && !bus->empty()) here = at_bus(line, *bus);
+    auto* text = std::get_if<std::string>(&row.back().data());
+    if (text == nullptr || !text->starts_with(kMend)) continue;
+    *text = with_place(chinese ? report::in_chinese(*text) : *text, here);
+  }
+  for (auto& document : table.documents) {
+    auto* record = std::get_if<report::Record>(&document.data());
+    if (record == nullptr) continue;
+    std::string bus;
+    for (auto& field : *record) {
+      auto* text = std::get_if<std::string>(&field.value.data());
+      if (text != nullptr && field.key == "bus") bus = *text;
+      if (text != nullptr && field.key == "mend") *text = with_place(*text, at_bus(line, bus));
+    }
+  }
 }
 
 }  // namespace
@@ -69,6 +119,8 @@ std::string with_place(std::string_view text, const ParsedLine& line) {
 Outcome with_place(Outcome outcome, const ParsedLine& line) {
   for (auto& error : outcome.errors) error.hint = with_place(error.hint, line);
   for (auto& notice : outcome.notices) notice = with_place(notice, line);
+  if (auto* table = std::get_if<report::Table>(&outcome.result.data()))
+    place_mends(*table, line, outcome.told);
   return outcome;
 }
 

@@ -13,7 +13,8 @@ namespace servoctl::cli {
 /// typed after that line as it is printed; what the prompt or the environment says holds for it anyway.
 std::string with_place(std::string_view text, const ParsedLine& line);
 
-/// The same in all hints and notices of what came of the line.
+/// The same in all hints and notices of what came of the line, and in what mends a finding: that is done at
+/// the bus of the finding. The family of the line is left out behind a node that the line does not name.
 Outcome with_place(Outcome outcome, const ParsedLine& line);
 
 }  // namespace servoctl::cli

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "cli/terminal/prompt_words.hpp"
+#include "report/catalogue.hpp"
 #include "report/value.hpp"
 #include "show/field_reader.hpp"
 
@@ -41,12 +42,18 @@ bool opens_silently(Shell& shell, std::string bus) {
          bus.starts_with("sim:");
 }
 
-std::string in_words(const LastPlace& place) {
+std::string in_words(const LastPlace& place, bool chinese) {
   std::string out;
-  if (!place.bus.empty()) append(out, "bus " + place.bus);
-  if (!place.nodes.empty()) append(out, (names_axes(place.nodes) ? "" : "node ") + place.nodes);
-  if (!place.drive.empty()) append(out, "family " + place.drive);
-  if (!place.cabinet.empty()) append(out, "cabinet " + place.cabinet);
+  const auto add = [&](std::string_view word, const std::string& name) {
+    if (!name.empty()) append(out, fmt::format("{} {}", chinese ? report::chinese_word(word) : word, name));
+  };
+  add("bus", place.bus);
+  if (names_axes(place.nodes))
+    append(out, place.nodes);
+  else
+    add("node", place.nodes);
+  add("family", place.drive);
+  add("cabinet", place.cabinet);
   return printable(out);
 }
 
@@ -128,12 +135,13 @@ void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   const auto& place = **last;
   // Who names a cabinet file wants to be there.
   if (!now.cabinet.empty() && place.cabinet.empty()) return;
+  const auto words = in_words(place, shell.console().chinese());
   if (const auto there = go_to(shell, place); !there)
-    return tell(shell, fmt::format("not as last time ({}): {}; `bus` and `use` say where to go",
-                                   in_words(place), there.error().message));
+    return tell(shell, fmt::format("not as last time ({}): {}; `bus` and `use` say where to go", words,
+                                   there.error().message));
   const bool waits = place.bus.empty() || !opens_silently(shell, place.bus);
-  tell(shell, fmt::format("as last time ({}): {}; `bus`, `use` and `drive` change it{}", place.time,
-                          in_words(place), waits ? "; the first line that needs the bus opens it" : ""));
+  tell(shell, fmt::format("as last time ({}): {}; `bus`, `use` and `drive` change it{}", place.time, words,
+                          waits ? "; the first line that needs the bus opens it" : ""));
 }
 
 void keep_last_place(Shell& shell, const std::filesystem::path& state_folder) {

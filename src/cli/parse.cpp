@@ -217,6 +217,13 @@ LineParser& parser_of(const Command& command) {
   return parsers.try_emplace(&command, command).first->second;
 }
 
+/// Words of other tools for what every `lss` command does by itself (CiA 305: switch state).
+bool selects_by_itself(const std::vector<std::string>& words, std::size_t first) {
+  if (words[first] != "lss" || first + 1 >= words.size()) return false;
+  const auto& word = words[first + 1];
+  return word == "select" || word == "switch" || word == "mode" || word.starts_with("config");
+}
+
 tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std::size_t first) {
   std::vector<std::string> paths;
   std::vector<std::string> in_group;
@@ -227,8 +234,12 @@ tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std
   }
   if (!in_group.empty()) {
     const auto said = first + 1 < words.size() ? words[first] + " " + words[first + 1] : words[first];
+    const auto* const why =
+        selects_by_itself(words, first)
+            ? "each `lss` command selects its slave by itself, and lets it go in the end; "
+            : "";
     return fail(Errc::usage, fmt::format("'{}' is not a command", said),
-                fmt::format("use {}", one_of(in_group)));
+                why + fmt::format("use {}", one_of(in_group)));
   }
   if (const auto* word = command::find_prompt_word(words[first]); word != nullptr)
     return fail(Errc::usage, fmt::format("'{}' is a word of the prompt, and no command", word->name),

@@ -21,9 +21,12 @@ RunningLine::RunningLine(Shell& shell, const Settings& settings, command::Contex
 }
 
 const report::Names* RunningLine::chinese_names() {
-  if (!settings_->shows_chinese() || context_->profile == nullptr) return nullptr;
-  if (!names_) names_ = show::chinese_names(*context_->profile);
-  return &*names_;
+  if (!settings_->shows_chinese()) return nullptr;
+  if (context_->profile != nullptr) families_.insert(context_->profile);
+  if (families_.empty()) return nullptr;
+  for (const auto* family : families_)
+    if (named_.insert(family).second) names_.merge(show::chinese_names(*family));
+  return &names_;
 }
 
 std::string RunningLine::in_language(std::string_view text) {
@@ -165,7 +168,9 @@ Result<void> RunningLine::hold_family(std::span<const std::uint8_t> nodes, const
 
 Result<const drive::Profile*> RunningLine::family(const std::string& name) {
   const auto turn = shell_->take_turn();
-  return shell_->profile(name);
+  auto loaded = shell_->profile(name);
+  if (loaded) families_.insert(*loaded);
+  return loaded;
 }
 
 session::Protection::Hold RunningLine::protect() { return shell_->protect(session::Care::unsettled); }

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <memory>
-#include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -57,7 +57,7 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
   Result<void> hold_family(std::span<const std::uint8_t> nodes, const drive::Profile* profile,
                            FamilyGate::Weight weight);
 
-  /// Of the family, where the line has one; null in English.
+  /// Of the families of the line, if it has any; null in English.
   const report::Names* chinese_names();
 
  private:
@@ -67,7 +67,9 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
   Shell* shell_;
   const Settings* settings_;
   command::Context* context_;
-  std::optional<report::Names> names_;
+  std::set<const drive::Profile*> families_;  ///< That the line has asked for.
+  std::set<const drive::Profile*> named_;     ///< Those whose names are known.
+  report::Names names_;
   bool waits_ = false;
 };
 

@@ -53,7 +53,7 @@ Result<void> check_several(const command::Command& command, const command::Argum
       : command.goes_on ? fmt::format("it listens to one bus as it comes in: such as -n {}, and the "
                                       "others in another terminal",
                                       first)
-                        : "such as -n " + first);
+                        : fmt::format("such as -n {}", first));
 }
 
 /// Whether the parts are of several buses, and none of them asks: one question at a time. What may begin

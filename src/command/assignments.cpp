@@ -10,6 +10,12 @@ Result<std::vector<Assignment>> parse_assignments(std::span<const std::string> w
     out.push_back({words[0], words[1]});
     return out;
   }
+  if (words.size() == 1 && words[0].find('=') == std::string::npos)
+    return fail(
+        Errc::usage, fmt::format("no value is given for '{}'", words[0]),
+        fmt::format("`param set {0} VALUE` sets it; `param explain {0}` shows its range, `param get {0}` "
+                    "reads it",
+                    words[0]));
   for (const auto& word : words) {
     const auto equals = word.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/folded.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::drive {
@@ -58,6 +59,32 @@ std::vector<Target> named(const Profile& profile, std::string_view text) {
         out.push_back(target_at(&profile, entry->address));
     }
   }
+  return out;
+}
+
+/// What Chinese names are compared by; empty for a text without Chinese.
+std::string chinese_key(std::string_view text) {
+  const bool chinese =
+      std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
+  auto out = chinese ? folded(text) : std::string();
+  std::erase(out, ' ');
+  return out;
+}
+
+/// Parameters and entries that are called so in Chinese, each address once.
+std::vector<Target> named_in_chinese(const Profile& profile, std::string_view text) {
+  const auto wanted = chinese_key(text);
+  std::vector<Target> out;
+  if (wanted.empty()) return out;
+  const auto add = [&](ObjectAddress address) {
+    if (std::none_of(out.begin(), out.end(), [&](const Target& each) { return each.address == address; }))
+      out.push_back(target_at(&profile, address));
+  };
+  for (const auto& parameter : profile.parameters)
+    if (parameter.object && chinese_key(parameter.name_zh) == wanted) add(*parameter.object);
+  for (const auto& object : profile.dictionary.objects())
+    for (const auto& entry : object.entries)
+      if (chinese_key(entry.name_zh) == wanted) add(entry.address);
   return out;
 }
 
@@ -137,8 +164,11 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
     if (const auto* parameter = profile.parameter(*address)) return parameter;
   std::vector<const od::Parameter*> named;
   const auto wanted = od::identifier(text);
+  const auto wanted_zh = chinese_key(text);
   for (const auto& parameter : profile.parameters)
-    if (od::identifier(parameter.name) == wanted) named.push_back(&parameter);
+    if (wanted_zh.empty() ? od::identifier(parameter.name) == wanted
+                          : chinese_key(parameter.name_zh) == wanted_zh)
+      named.push_back(&parameter);
   if (named.size() == 1) return named.front();
   std::vector<std::string> known;
   for (const auto* parameter : named) known.push_back(parameter->id);
@@ -171,7 +201,8 @@ Result<Target> resolve(const Profile* profile, std::string_view text) {
     return target_at(profile, *parameter->object);
   }
   if (auto target = by_rule(*profile, text)) return *target;
-  auto found = named(*profile, text);
+  auto found = named_in_chinese(*profile, text);
+  if (found.empty()) found = named(*profile, text);
   if (found.empty()) {
     const auto wanted = od::identifier(text);
     for (const auto& parameter : profile->parameters)

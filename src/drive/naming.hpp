@@ -26,11 +26,10 @@ struct Target {
   bool is_contradicted(std::string_view field) const;
 };
 
-/// Finds an object by address (`0x6041`, `6099h.1`), by name (`statusword`, `homing_speeds.switch`) or by
-/// panel number
-/// (`Pn202`), in any case. Without a profile only addresses are understood. Errc::usage when the name is
-/// unknown (nearest names offered), ambiguous (all meanings offered), or belongs to a parameter without an
-/// object.
+/// Finds an object by address (`0x6041`, `6099h.1`), by name (`statusword`, `homing_speeds.switch`, `状态字`)
+/// or by panel number (`Pn202`), in any case. Without a profile only addresses are understood. Errc::usage
+/// when the name is unknown (nearest names offered), ambiguous (all meanings offered), or belongs to a
+/// parameter without an object.
 Result<Target> resolve(const Profile* profile, std::string_view text);
 
 /// The panel parameter of this number or name. Errc::usage as in resolve(); one without an object is found as

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/number.hpp"
+#include "base/pdo_index.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/unit.hpp"
@@ -107,9 +108,18 @@ bool ends_in_own_unit(const Meaning& meaning, std::string_view text) {
          split_unit(text).has_value();
 }
 
+/// COB-IDs (CiA 301, 7.5.2), and what a PDO carries: an index, a sub-index and a number of bits.
+bool is_of_fields(ObjectAddress object) {
+  const bool alone = object.index == 0x1005 || object.index == 0x1012 || object.index == 0x1014;
+  if (alone) return object.sub == 0;
+  if (object.index >= 0x1200 && object.index <= 0x12FF) return object.sub == 1 || object.sub == 2;
+  if (is_pdo_communication(object.index)) return object.sub == 1;
+  return is_pdo_mapping(object.index) && object.sub != 0;
+}
+
 /// 60FEh has levels, and which of them are set at all.
 bool is_of_bits(ObjectAddress object) {
-  return object == objects::kControlword || object == objects::kStatusword ||
+  return is_of_fields(object) || object == objects::kControlword || object == objects::kStatusword ||
          object == objects::kDigitalInputs ||
          (object.index == objects::kDigitalOutputsIndex && object.sub != 0);
 }

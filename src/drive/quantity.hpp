@@ -28,8 +28,8 @@ struct Meaning {
   const std::vector<od::EnumLabel>* labels = nullptr;
   od::Effect effect = od::Effect::unstated;
   od::Encoding encoding = od::Encoding::plain;
-  bool bits = false;  ///< Its bits are what it says: controlword, statusword, digital inputs and outputs.
-                      ///< Told in hexadecimal.
+  bool bits = false;  ///< Its bits are what it says: controlword, statusword, digital inputs and outputs,
+                      ///< COB-IDs, mappings. Told in hexadecimal.
   bool size_known = true;          ///< False: the manual does not tell the length; the drive must be asked.
   std::optional<Measure> measure;  ///< What must be read from the drive to convert the unit.
   std::optional<Bridge> bridge;    ///< What came of it; filled in by whoever read it.

@@ -29,14 +29,25 @@ double rounded(double value, int digits = 6) {
   return parse_real(plain_number(value, digits)).value_or(value);
 }
 
-/// First, last, least and greatest value of one quantity.
+/// Three decimals for people, of less than one three digits: as the line of a running motion has them.
+double shown(double value) {
+  return std::abs(value) >= 1 ? std::round(value * 1000) / 1000 : rounded(value, 3);
+}
+
+/// First, last, least and greatest value of one quantity; in JSON with six digits.
 Value summary_of(const std::vector<Series>& series) {
   report::Table table;
   table.columns = {{"quantity"}, {"unit"}, {"first"}, {"last"}, {"least"}, {"greatest"}};
   for (const auto& one : series) {
     const auto [least, greatest] = std::minmax_element(one.values.begin(), one.values.end());
-    table.rows.push_back({one.name, report::text_or_null(one.unit), rounded(one.values.front()),
-                          rounded(one.values.back()), rounded(*least), rounded(*greatest)});
+    table.rows.push_back({one.name, report::text_or_null(one.unit), shown(one.values.front()),
+                          shown(one.values.back()), shown(*least), shown(*greatest)});
+    table.documents.emplace_back(report::Record{{"quantity", one.name},
+                                                {"unit", report::text_or_null(one.unit)},
+                                                {"first", rounded(one.values.front())},
+                                                {"last", rounded(one.values.back())},
+                                                {"least", rounded(*least)},
+                                                {"greatest", rounded(*greatest)}});
   }
   return table;
 }

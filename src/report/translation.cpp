@@ -81,6 +81,7 @@ class Translation {
       if (parts.parts.size() < 2) continue;
       if (take(in_parts(parts, static_cast<Joint>(joint)))) break;
     }
+    if (!best || best->left > 0) take(of_axis(text));
     return best ? std::move(*best) : as_it_is(text);
   }
 
@@ -96,6 +97,21 @@ class Translation {
     if (!found || std::count(rest.begin(), rest.end(), ' ') < static_cast<std::ptrdiff_t>(kWords))
       return std::nullopt;
     return Translated{of(place).text + "：" + *found, 0, true};
+  }
+
+  /// `feeder: …` and `feeder, object 0x6041:0`, of an axis by its name, are told as `node 1: …` is.
+  Translated of_axis(std::string_view text) {
+    const auto name = text.substr(0, std::min(text.find(": "), text.find(", object ")));
+    const bool lower = std::any_of(name.begin(), name.end(), [](char c) { return c >= 'a' && c <= 'z'; });
+    // Neither `LSS slave: …` nor `INTERFACE: …` tells of an axis.
+    if (signs_ > 0 || !lower || name == text || name.find_first_of(" :,`'\"\n") != std::string_view::npos)
+      return as_it_is(text);
+    auto out = of(std::string("node ").append(text));
+    const std::string before = "节点 ";
+    if (out.left > small_words(name) || !out.text.starts_with(before + std::string(name)))
+      return as_it_is(text);
+    out.text.erase(0, before.size());
+    return has_chinese(out.text) ? Translated{std::move(out.text), 0, true} : as_it_is(text);
   }
 
   /// `… [NODE=1]`: a batch file and its round; nothing for others.
@@ -146,15 +162,17 @@ class Translation {
   Translated behind_sign(std::string_view text) {
     const auto blank = text.find(' ');
     const auto sign = text.substr(0, blank);
-    const bool is_sign = blank != std::string_view::npos && !sign.ends_with(':') &&
-                         (sign.starts_with("0x") || std::none_of(sign.begin(), sign.end(), [](char c) {
-                            return (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
-                          }));
+    const bool is_sign =
+        blank != std::string_view::npos && !sign.ends_with(':') &&
+        (sign.starts_with("0x") || sign == "×" || std::none_of(sign.begin(), sign.end(), [](char c) {
+           return (c >= 'a' && c <= 'z') || static_cast<unsigned char>(c) >= 0x80;
+         }));
     // The words of a sentence in capitals are no signs.
     if (!is_sign || begins_in_capitals(text)) return as_it_is(text);
+    ++signs_;
     auto out = of(text.substr(blank + 1));
-    out.text.insert(0, text.substr(0, blank + 1));
-    return out;
+    --signs_;
+    return {std::string(text.substr(0, blank + 1)) + out.text, out.left, out.changed};
   }
 
   static Translated as_it_is(std::string_view text) { return {std::string(text), small_words(text)}; }
@@ -251,6 +269,7 @@ class Translation {
   const Names* names_;
   std::size_t effort_;
   std::size_t depth_ = 0;
+  std::size_t signs_ = 0;  ///< Before what is looked at.
   std::unordered_map<std::string, Translated> known_;
 };
 

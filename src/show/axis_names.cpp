@@ -38,6 +38,13 @@ std::string_view digits_at(std::string_view text) {
   return more || decimal ? std::string_view() : text.substr(0, end);
 }
 
+/// A character of Chinese, and none of its marks.
+bool ends_with_character(std::string_view text) {
+  if (text.size() < 3) return false;
+  const auto first = static_cast<unsigned char>(text[text.size() - 3]);
+  return first >= 0xE4 && first <= 0xE9;
+}
+
 /// What stands before a list of node numbers in sentences, and whether it goes when the first has a name.
 struct Lead {
   std::string_view word;
@@ -80,6 +87,8 @@ std::string AxisNames::in(std::string_view text) const {
       continue;
     }
     if (!lead->goes) out += lead->word;
+    // Between Chinese and a name stands a blank, as between Chinese and the number.
+    if (lead->goes && ends_with_character(out)) out += ' ';
     at += lead->word.size();
     while (!digits.empty()) {
       const auto name = name_of(digits);

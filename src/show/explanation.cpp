@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <iterator>
 #include <optional>
 
 #include "base/number.hpp"
@@ -10,6 +11,7 @@
 #include "drive/naming.hpp"
 #include "report/catalogue.hpp"
 #include "show/fault_records.hpp"
+#include "show/lead_words.hpp"
 #include "show/object_records.hpp"
 #include "show/records.hpp"
 
@@ -215,8 +217,10 @@ void add_topics(const TopicQuery& query, const Library& library, std::vector<Exp
 
 }  // namespace
 
-std::vector<Explanation> explanations(const TopicQuery& query, std::span<const Library> libraries,
-                                      bool chinese) {
+namespace {
+
+std::vector<Explanation> explained(const TopicQuery& query, std::span<const Library> libraries,
+                                   bool chinese) {
   std::vector<Explanation> out;
   for (const auto& library : libraries) {
     const auto& profile = *library.profile;
@@ -229,6 +233,19 @@ std::vector<Explanation> explanations(const TopicQuery& query, std::span<const L
   add_exit_code(query, out);
   std::stable_sort(out.begin(), out.end(),
                    [](const Explanation& a, const Explanation& b) { return a.found < b.found; });
+  return out;
+}
+
+}  // namespace
+
+std::vector<Explanation> explanations(const TopicQuery& query, std::span<const Library> libraries,
+                                      bool chinese) {
+  auto out = explained(query, libraries, chinese);
+  const auto led = without_lead(query.whole());
+  if (!led || (!out.empty() && out.front().found < Found::title)) return out;
+  auto behind = explained(TopicQuery(led->rest), libraries, chinese);
+  std::erase_if(behind, [&](const Explanation& each) { return each.found != led->found; });
+  out.insert(out.begin(), std::make_move_iterator(behind.begin()), std::make_move_iterator(behind.end()));
   return out;
 }
 

@@ -52,6 +52,7 @@ report::Table fault_table(std::span<const drive::Fault* const> faults, bool chin
                           f->doubts.sign(), !f->doubts.assumed.empty(), marks_record(f->doubts.assumed),
                           !f->doubts.contradicted.empty(), marks_record(f->doubts.contradicted)});
   }
+  explain_marks(table);
   return table;
 }
 

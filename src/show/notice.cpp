@@ -44,7 +44,10 @@ struct Words {
   }
   std::string operator()(const session::NodeEvent::Doubled& doubled) const {
     if (is_ring()) return fmt::format("two slaves answer under its address: {}", doubled.by);
-    return fmt::format("two nodes answer under this node-ID: {}", doubled.by);
+    return fmt::format(
+        "two nodes answer under this node-ID: {}; switch all but one off, or `lss set-node` by serial number: "
+        "`help lss set-node`",
+        doubled.by);
   }
   std::string operator()(const session::NodeEvent::StateError& error) const {
     return fmt::format("state error 0x{:04X}: {}", error.code, error.text);

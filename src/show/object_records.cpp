@@ -101,6 +101,7 @@ report::Table object_table(std::vector<Record> records) {
     }
     table.rows.push_back(std::move(row));
   }
+  explain_marks(table);
   return table;
 }
 

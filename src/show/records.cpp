@@ -196,7 +196,22 @@ Table parameter_table(std::span<const od::Parameter* const> parameters, bool chi
     first = false;
     table.rows.push_back(std::move(row));
   }
+  explain_marks(table);
   return table;
+}
+
+void explain_marks(Table& table) {
+  const auto mark = std::find_if(table.columns.begin(), table.columns.end(),
+                                 [](const auto& column) { return column.key == "mark"; });
+  if (mark == table.columns.end()) return;
+  const auto at = static_cast<std::size_t>(mark - table.columns.begin());
+  const bool any = std::any_of(table.rows.begin(), table.rows.end(), [&](const List& row) {
+    const auto* sign = at < row.size() ? std::get_if<std::string>(&row[at].data()) : nullptr;
+    return sign != nullptr && !sign->empty();
+  });
+  if (any)
+    table.below.emplace_back(
+        "behind ? the manual does not state it, behind ! it states another value as well; `explain NAME` tells more");
 }
 
 Error located(Error error, std::uint8_t node, ObjectAddress object) {

@@ -45,6 +45,8 @@ report::Record parameter_record(const od::Parameter& parameter, bool chinese);
 
 /// Panel parameters as a table: what fits a line in text, everything in JSON.
 report::Table parameter_table(std::span<const od::Parameter* const> parameters, bool chinese);
+/// Says below a table whose column `mark` has od::Doubts::sign() what the signs mean, where there is one.
+void explain_marks(report::Table& table);
 
 /// Adds node and object to an error that has none.
 Error located(Error error, std::uint8_t node, ObjectAddress object);

@@ -17,8 +17,14 @@ using Lines = std::vector<std::string>;
 
 constexpr std::size_t kGap = 2;
 
-const std::string& in_language(const std::string& english, const std::string& zh, bool chinese) {
-  return chinese && !zh.empty() ? zh : english;
+/// Whatever marks the file has, those of Chinese.
+std::string in_language(const std::string& english, const std::string& zh, bool chinese) {
+  return chinese && !zh.empty() ? report::chinese_marks(zh) : english;
+}
+
+/// Names in Chinese are for who reads it; a terminal without UTF-8 could only show their numbers.
+bool is_ascii(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
 /// A word of the program.
@@ -117,7 +123,7 @@ class TopicTable {
   /// Where the cells leave too little room, the text stands below them.
   void add_row(const drive::TopicRow& row, Lines& out) const {
     const auto left = cells_of(row.cells);
-    const auto& text = in_language(row.text, row.text_zh, chinese_);
+    const auto text = in_language(row.text, row.text_zh, chinese_);
     const auto used = display_width(left);
     if (used <= width_ + kGap && (text.empty() || used + kLeastText <= width_))
       return add_hanging(left, text, width_, out);
@@ -169,7 +175,8 @@ void add_marks(const Explanation& explanation, bool chinese, std::size_t width, 
   const auto line = of_manual ? lines_in_words(only.empty() ? topic.line : only) : topic.line;
   std::string also;
   if (explanation.rows.empty())
-    for (const auto& name : topic.also) append(also, name);
+    for (const auto& name : topic.also)
+      if (chinese || is_ascii(name)) append(also, name);
   // A record tells the rest itself.
   const bool bare = explanation.details.is_null();
   const std::pair<std::string_view, std::string> marks[] = {

@@ -64,16 +64,18 @@ void add_wrong_bitrate(std::vector<Finding>& out, const BusPicture& picture, con
   const auto count = picture.damage() + counted_errors(facts);
   auto text = picture.damage() > 0 ? picture.damage_text() : fmt::format("{} errors", count);
   if (count == 0) text = fmt::format("error counter rx {}", facts->state.rx_errors.value_or(0));
-  const auto bitrate = facts != nullptr && facts->state.bitrate
-                           ? fmt::format(" than {}", drive::bitrate_text(*facts->state.bitrate))
-                           : std::string();
-  out.push_back(
-      {Level::fault, "wrong-bitrate", fmt::format("errors and not one frame: {}", text),
-       fmt::format("somebody talks, and nothing of it can be read: another bitrate{}; seldom CAN_H and CAN_L "
-                   "crossed, or no terminator at all",
-                   bitrate),
-       facts != nullptr ? fmt::format("`bus detect {}` finds the bitrate", facts->name)
-                        : find_bitrate(facts)});
+  const auto means =
+      facts != nullptr && facts->state.bitrate
+          ? fmt::format(
+                "somebody talks, and nothing of it can be read: another bitrate than {}; seldom CAN_H and "
+                "CAN_L crossed, or no terminator at all",
+                drive::bitrate_text(*facts->state.bitrate))
+          : std::string(
+                "somebody talks, and nothing of it can be read: another bitrate; seldom CAN_H and CAN_L "
+                "crossed, or no terminator at all");
+  out.push_back({Level::fault, "wrong-bitrate", fmt::format("errors and not one frame: {}", text), means,
+                 facts != nullptr ? fmt::format("`bus detect {}` finds the bitrate", facts->name)
+                                  : find_bitrate(facts)});
 }
 
 void add_damage(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
@@ -91,10 +93,8 @@ void add_damage(std::vector<Finding>& out, const BusPicture& picture, const Link
 
 void add_wires(std::vector<Finding>& out, const BusPicture& picture) {
   if (picture.wires().empty()) return;
-  out.push_back({Level::fault,
-                 "wires",
-                 fmt::format("the transceiver reports: {}", picture.wires()),
-                 {},
+  out.push_back({Level::fault, "wires", fmt::format("the transceiver reports: {}", picture.wires()),
+                 "a wire is open or has a short: frames are damaged, or do not pass at all",
                  "check the two wires at the plug of the adapter and at each node"});
 }
 
@@ -106,17 +106,15 @@ void add_state(std::vector<Finding>& out, const BusPicture& picture, const LinkF
   const bool passive = picture.reports(ControllerReport::error_passive) > 0 ||
                        (facts != nullptr && facts->state.health == LinkHealth::error_passive);
   if (passive)
-    out.push_back({Level::fault,
-                   "error-passive",
-                   "the controller is or was error-passive",
-                   "128 errors more than good frames: it no longer marks those of others",
-                   {}});
+    out.push_back(
+        {Level::fault, "error-passive", "the controller is or was error-passive",
+         "an error counter is or was above 127: it no longer marks frames of others that it sees damaged",
+         "check bitrate, wiring and the 120 ohm at both ends; it goes back by itself as good frames come"});
   else if (facts != nullptr && facts->state.health == LinkHealth::error_warning)
-    out.push_back({Level::note,
-                   "error-warning",
-                   "the controller has counted 96 errors or more",
-                   "they go down with each good frame: look again in a minute",
-                   {}});
+    out.push_back(
+        {Level::note, "error-warning", "an error counter of the controller is at 96 or more",
+         "errors let it rise, each good frame lets it fall: there were many errors, now or a moment ago",
+         "look again in a minute; if it has not fallen, check bitrate, wiring and the 120 ohm at both ends"});
 }
 
 void add_load(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
@@ -158,11 +156,10 @@ void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkF
   if (!picture.nodes().empty()) text += fmt::format("; alive: node {}", fmt::join(picture.nodes(), ", "));
   out.push_back({Level::ok, "traffic", std::move(text), {}, {}});
   if (picture.extended() > 0)
-    out.push_back({Level::note,
-                   "foreign-frames",
-                   fmt::format("{} frames have 29-bit identifiers", picture.extended()),
-                   "CANopen has none: something else is on the bus too",
-                   {}});
+    out.push_back(
+        {Level::note, "foreign-frames", fmt::format("{} frames have 29-bit identifiers", picture.extended()),
+         "CANopen has none: something else is on the bus too",
+         "`monitor` shows them; a device that is to be on this bus may stay as long as the load allows it"});
 }
 
 }  // namespace

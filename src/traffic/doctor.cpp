@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "can/link_change.hpp"
+#include "can/serial_port.hpp"
 #include "can/socketcan.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/node_list.hpp"
@@ -89,10 +90,10 @@ Result<std::vector<Finding>> ask_all(session::Session& session) {
   return out;
 }
 
-/// Silence is no more to be mended where they were asked.
+/// Silence is no more to be mended by asking where they were asked.
 void drop_advice(std::vector<Finding>& findings) {
   for (auto& finding : findings)
-    if (finding.code == "silence") finding.mend.clear();
+    if (finding.code == "silence") finding.mend = "they were asked: what they answered is told below";
 }
 
 Result<std::vector<Finding>> ask_over(const std::string& name, const DoctorOptions& options) {
@@ -222,7 +223,7 @@ Findings examine_machine() {
   std::error_code error;
   const bool has_can =
       std::filesystem::exists("/proc/net/can", error) || std::filesystem::exists("/sys/module/can", error);
-  return {"", no_interface_findings(has_can)};
+  return {"", no_interface_findings(has_can, can::serial_adapters())};
 }
 
 }  // namespace servoctl::traffic

@@ -21,7 +21,7 @@ std::string up_line(const LinkFacts& facts) {
 
 std::string state_text(const LinkFacts& facts) {
   const auto& state = facts.state;
-  auto out = fmt::format("{} is {}", facts.name, state.up ? "up" : "down");
+  auto out = state.up ? fmt::format("{} is up", facts.name) : fmt::format("{} is down", facts.name);
   if (state.bitrate) out += ", " + drive::bitrate_text(*state.bitrate);
   if (state.bitrate && state.sample_point)
     out += fmt::format(", sample point {:.1f} %", *state.sample_point / 10.0);
@@ -99,12 +99,25 @@ void add_health(std::vector<Finding>& out, const LinkFacts& facts) {
 
 void add_history(std::vector<Finding>& out, const LinkFacts& facts) {
   if (!facts.state.history || facts.state.history->bus_off == 0) return;
-  out.push_back({Level::note,
-                 "was-bus-off",
-                 fmt::format("it was bus-off {} time{} since its driver was loaded",
-                             facts.state.history->bus_off, facts.state.history->bus_off == 1 ? "" : "s"),
-                 "a loose plug, a wrong bitrate or a missing terminator, now or earlier",
-                 {}});
+  out.push_back(
+      {Level::note, "was-bus-off",
+       fmt::format("it was bus-off {} time{} since its driver was loaded", facts.state.history->bus_off,
+                   facts.state.history->bus_off == 1 ? "" : "s"),
+       "a loose plug, a wrong bitrate or a missing terminator, now or earlier",
+       fmt::format("`bus status {}` shows whether the count goes on; if so, check plugs, bitrate and the "
+                   "120 ohm at both ends",
+                   facts.name)});
+}
+
+/// An adapter that is a serial port is no interface of the kernel, and needs none.
+std::string serial_port_text(const std::vector<std::string>& ports) {
+  if (ports.empty())
+    return "an adapter that is a serial port (slcan) needs neither driver nor root: `scan -b slcan:PORT@500k`; "
+           "none is plugged in now";
+  return fmt::format(
+      "an adapter that is a serial port (slcan) needs neither driver nor root: `scan -b slcan:{}@500k`, "
+      "with the bitrate of the drives; USB serial ports: {}",
+      ports.front(), fmt::join(ports, ", "));
 }
 
 }  // namespace
@@ -124,24 +137,23 @@ std::vector<Finding> link_findings(const LinkFacts& facts) {
     add_history(out, facts);
   }
   if (facts.may_change == false)
-    out.push_back({Level::note,
-                   "no-right",
-                   "this user may not change the interface (CAP_NET_ADMIN)",
-                   {},
+    out.push_back({Level::note, "no-right", "this user may not change the interface (CAP_NET_ADMIN)",
+                   "`bus up`, `bus down` and `bus detect` need it; reading and writing drives do not",
                    can::right_command()});
   return out;
 }
 
-std::vector<Finding> no_interface_findings(bool kernel_has_can) {
+std::vector<Finding> no_interface_findings(bool kernel_has_can, const std::vector<std::string>& serial) {
+  const auto by_serial_port = serial_port_text(serial);
   if (!kernel_has_can)
-    return {
-        {Level::fault, "no-kernel-can", "the kernel has no CAN", "no adapter can work with it",
-         "`sudo modprobe can-raw`; without a kernel that has it: `--bus local:NAME`, `--bus sim:FAMILY@1`"}};
+    return {{Level::fault, "no-kernel-can", "the kernel has no CAN",
+             "no adapter that needs a driver of the kernel can work; one that is a serial port (slcan) can",
+             fmt::format("`sudo modprobe can-raw`; {}; without any adapter: `--bus sim:FAMILY@1`",
+                         by_serial_port)}};
   return {
       {Level::fault, "no-adapter", "this machine has no CAN interface",
-       "no adapter is plugged in, or it has no driver",
-       "plug it in, then `lsusb` or `lspci` and `sudo dmesg` say whether it was seen; an adapter on a serial line is "
-       "attached with `sudo slcand -o -s6 /dev/ttyACM0 can0` (-s6: 500 kbit/s)"}};
+       "no adapter is plugged in, or it has no driver, or it is a serial port (slcan)",
+       "plug it in, then `lsusb` or `lspci` and `sudo dmesg` say whether it was seen; " + by_serial_port}};
 }
 
 }  // namespace servoctl::traffic

@@ -28,7 +28,7 @@ std::vector<Finding> link_findings(const LinkFacts& facts);
 /// on `local:` and `sim:`.
 std::vector<Finding> bus_findings(const BusPicture& picture, const LinkFacts* facts);
 
-/// Where there is no interface at all.
-std::vector<Finding> no_interface_findings(bool kernel_has_can);
+/// Where there is no interface at all. `serial`: the ports of can::serial_adapters().
+std::vector<Finding> no_interface_findings(bool kernel_has_can, const std::vector<std::string>& serial);
 
 }  // namespace servoctl::traffic

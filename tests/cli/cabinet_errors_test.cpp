@@ -8,9 +8,13 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
+#include <sstream>
+#include <utility>
 
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "chinese_words.hpp"
 #include "golden_cases.hpp"
 
 namespace servoctl::cli {
@@ -47,7 +51,7 @@ std::vector<ErrorCase> error_cases() {
 }
 
 /// In a folder of its own, with the state of nobody.
-std::string played(const ErrorCase& c, const fs::path& folder) {
+std::string played(const ErrorCase& c, const fs::path& folder, bool chinese = false) {
   fs::remove_all(folder);
   fs::create_directories(folder);
   fs::current_path(folder);
@@ -62,6 +66,7 @@ std::string played(const ErrorCase& c, const fs::path& folder) {
   // Named from here, so that no path of this folder makes a table wider.
   options.defaults.cabinet = c.files.count("cabinet.toml") != 0 ? "cabinet.toml" : "";
   if (c.files.empty()) options.defaults.bus = "sim:gsd600@1,da200@2";
+  options.defaults.chinese = chinese;
   Shell shell(console, std::move(options));
   LineRunner runner(shell);
   std::string out = fmt::format("== {}\n", c.name);
@@ -98,6 +103,42 @@ TEST(CabinetErrors, SayWhatTheySaidBefore) {
   const auto expected = read_file(golden);
   ASSERT_TRUE(expected);
   EXPECT_EQ(*expected, said) << "`./dev golden` writes " << golden << " anew";
+}
+
+/// Words that the files and lines of the case have are theirs, and keys of a cabinet file are typed as they
+/// are.
+std::set<std::string> own_words(const ErrorCase& c) {
+  std::string text = "encoder gear limits pdos turn url key value local ";
+  for (const auto& line : c.lines) text += line + " ";
+  for (const auto& [name, content] : c.files) text += name + " " + content + " ";
+  std::set<std::string> out;
+  std::string word;
+  for (const char letter : text + " ") {
+    const bool is_word =
+        (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || letter == '-';
+    if (is_word) word += letter;
+    if (!is_word && !word.empty()) out.insert(std::exchange(word, {}));
+  }
+  return out;
+}
+
+TEST(CabinetErrors, AreInChineseForWhoReadsIt) {
+  ::setenv("SOURCE_DATE_EPOCH", "1795000000", 1);
+  const auto before = fs::current_path();
+  const auto folder = fs::temp_directory_path() / fmt::format("servoctl-cabinet-chinese-{}", ::getpid());
+  std::set<std::string> left;
+  for (const auto& c : error_cases()) {
+    const auto own = own_words(c);
+    std::istringstream lines(played(c, folder, true));
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("== ") || line.starts_with("$ ") || line.starts_with("[")) continue;
+      for (const auto& word : english_words(line))
+        if (own.count(word) == 0) left.insert(fmt::format("{}  in  {}: {}", word, c.name, line));
+    }
+  }
+  fs::current_path(before);
+  fs::remove_all(folder);
+  for (const auto& line : left) ADD_FAILURE() << line;
 }
 
 }  // namespace

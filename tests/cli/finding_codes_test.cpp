@@ -49,6 +49,36 @@ std::set<std::string> codes_of_page() {
   return out;
 }
 
+/// The findings of a file that are no `ok`, without what stands in quotes: `{Level::note,"code",…}`.
+std::vector<std::string> findings_in(const std::string& text) {
+  const auto bare = std::regex_replace(text, std::regex(R"re("(?:\\.|[^"\\])*")re"), "\"\"");
+  std::vector<std::string> out;
+  static const std::regex begin(
+      R"re(\{\s*(?:Finding::)?Level::fault|\{\s*(?:Finding::)?Level::note|\{\*load|\{now)re");
+  for (std::sregex_iterator at(bare.begin(), bare.end(), begin), end; at != end; ++at) {
+    auto stop = static_cast<std::size_t>(at->position());
+    int depth = 0;
+    do {
+      depth += bare[stop] == '{' ? 1 : bare[stop] == '}' ? -1 : 0;
+      ++stop;
+    } while (depth > 0 && stop < bare.size());
+    out.push_back(bare.substr(static_cast<std::size_t>(at->position()),
+                              stop - static_cast<std::size_t>(at->position())));
+  }
+  return out;
+}
+
+TEST(FindingCodes, AllSayWhatTheyMeanAndWhatMendsThem) {
+  std::size_t count = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::filesystem::path(source_dir()) / "src/traffic"))
+    for (const auto& finding : findings_in(content(entry.path()))) {
+      ++count;
+      EXPECT_EQ(finding.find("{}"), std::string::npos) << entry.path() << ": " << finding;
+    }
+  EXPECT_GT(count, 30U);
+}
+
 TEST(FindingCodes, AreKnownToExplainAndToThePage) {
   const auto file = std::filesystem::path(source_dir()) / "eds/cia/cia402.topics.toml";
   const auto topics = drive::parse_topics(content(file), file.string(), "cia402");

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "report/value.hpp"
+#include "traffic/finding.hpp"
+
 namespace servoctl::cli {
 namespace {
 
@@ -36,6 +39,42 @@ TEST(HintPlace, IsNotPutIntoWhatIsNoWholeCommand) {
 TEST(HintPlace, QuotesWhatAShellWouldTakeApart) {
   EXPECT_EQ(placed("`scan`", {"status", "-n", "1", "-b", "sim:dm@1?fault=0xFF00@1s&silent=2s"}),
             "`scan -b 'sim:dm@1?fault=0xFF00@1s&silent=2s'`");
+}
+
+TEST(HintPlace, LeavesTheFamilyToTheNodesOfTheLine) {
+  const std::vector<std::string> line{"heartbeat", "show", "-n", "3", "-d", "ts"};
+  EXPECT_EQ(placed("`heartbeat set 100ms -n 5`", line), "`heartbeat set 100ms -n 5`");
+  EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", line), "`heartbeat set 100ms -n 3 -d ts`");
+  const std::vector<std::string> several{"heartbeat", "show", "-n", "1-4", "-d", "ts"};
+  EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", several), "`heartbeat set 100ms -n 3 -d ts`");
+  const std::vector<std::string> all{"heartbeat", "show", "-n", "all", "-d", "ts"};
+  EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", all), "`heartbeat set 100ms -n 3 -d ts`");
+}
+
+TEST(HintPlace, IsThatOfTheFindingInWhatMendsIt) {
+  const auto findings = [](const std::string& bus, const std::string& mend) {
+    Outcome out;
+    out.result = traffic::findings_value(
+        {{bus, {{traffic::Finding::Level::fault, "code", "what is so", "what it means", mend}}}});
+    return out;
+  };
+  const auto mended = [&](const std::string& bus, const std::string& mend, std::vector<std::string> line) {
+    const auto parsed = parse_line(line);
+    const auto out = with_place(findings(bus, mend), parsed.value());
+    const auto& table = std::get<report::Table>(out.result.data());
+    const auto json = report::to_json(table.documents.front());
+    const auto shown = std::get<std::string>(table.rows.back().back().data()).substr(8);
+    EXPECT_NE(json.find("\"mend\":\"" + shown + "\""), std::string::npos) << json;
+    return shown;
+  };
+  EXPECT_EQ(mended("slcan:/dev/ttyACM0@500k", "`doctor --active` asks them",
+                   {"doctor", "-b", "slcan:/dev/ttyACM0@500k"}),
+            "`doctor --active -b slcan:/dev/ttyACM0@500k` asks them");
+  EXPECT_EQ(mended("can0", "`address NEW -n 5`; `help lss set-node`", {"doctor", "can0"}),
+            "`address NEW -n 5 -b can0`; `help lss set-node`");
+  EXPECT_EQ(mended("can1", "`doctor can1 --active`, `bus up can1`", {"doctor"}),
+            "`doctor can1 --active`, `bus up can1`");
+  EXPECT_EQ(mended("", "`scan -b slcan:/dev/ttyACM0@500k`", {"doctor"}), "`scan -b slcan:/dev/ttyACM0@500k`");
 }
 
 }  // namespace

@@ -31,6 +31,7 @@ CHINESE_SOURCES = {
     'src/report/chinese_marks.hpp': 'marks',
     'src/report/translation.cpp': 'words and marks between the parts of a list',
     'src/show/axis_names.cpp': 'what stands before the number of a node',
+    'src/show/lead_words.cpp': 'words that people type',
     'src/show/topic_query.cpp': 'words that people type',
 }
 NOT_FOR_PEOPLE = 'not for people'

@@ -40,5 +40,11 @@ TEST(AxisNames, StandBeforeTheNodeInResults) {
             R"([{"value":1,"axis":"lift","node":4},{"value":2,"axis":null,"node":5}])");
 }
 
+TEST(AxisNames, StandApartFromChinese) {
+  const AxisNames names({{3, "feeder"}});
+  EXPECT_EQ(names.in("已写入节点 3 的参数"), "已写入 feeder 的参数");
+  EXPECT_EQ(names.in("节点 3：无应答（节点 3）"), "feeder：无应答（feeder）");
+}
+
 }  // namespace
 }  // namespace servoctl::show

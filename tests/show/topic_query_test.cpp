@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "show/explanation.hpp"
+#include "show/lead_words.hpp"
+#include "show/topic_page.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -127,6 +129,44 @@ TEST(ExitCodes, TellEveryErrorOnce) {
     codes.push_back(std::to_string(exit_code(error)) + " " + std::string(servoctl::name(error)));
   }
   EXPECT_EQ(told, codes);
+}
+
+TEST(LeadWords, StandBeforeWhatTheySay) {
+  const auto led = [](std::string_view text) {
+    const auto out = without_lead(text);
+    return out ? std::string(name(out->found)) + " " + out->rest : std::string("-");
+  };
+  EXPECT_EQ(led("abort 06090030"), "abort 06090030");
+  EXPECT_EQ(led("SDO abort code 0x06090030"), "abort 0x06090030");
+  EXPECT_EQ(led("SDO 中止码 0x06090030"), "abort 0x06090030");
+  EXPECT_EQ(led("EMCY: 0x8130"), "fault 0x8130");
+  EXPECT_EQ(led("故障码8130"), "fault 8130");
+  EXPECT_EQ(led("object 6041"), "object 6041");
+  for (const auto* text : {"aborted 3", "abort", "emcy", "homing 7", "中止"})
+    EXPECT_EQ(led(text), "-") << text;
+}
+
+TEST(TopicPage, HasTheMarksOfChineseWhateverTheFileHas) {
+  Explanation explanation;
+  explanation.topic.title_zh = "点动 (pp)";
+  explanation.topic.text_zh = "写 0x80 (复位)";
+  std::string page;
+  for (const auto& line : topic_page(explanation, true, 80)) page += line + "\n";
+  EXPECT_NE(page.find("点动（pp）"), std::string::npos) << page;
+  EXPECT_NE(page.find("写 0x80（复位）"), std::string::npos) << page;
+}
+
+TEST(TopicPage, LeavesChineseNamesToWhoReadsChinese) {
+  Explanation explanation;
+  explanation.topic.also = {"position mode", "位置模式"};
+  const auto page = [&](bool chinese) {
+    std::string out;
+    for (const auto& line : topic_page(explanation, chinese, 80)) out += line + "\n";
+    return out;
+  };
+  EXPECT_NE(page(false).find("position mode"), std::string::npos);
+  EXPECT_EQ(page(false).find("位置模式"), std::string::npos);
+  EXPECT_NE(page(true).find("位置模式"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -30,11 +32,15 @@ inline LinkFacts facts(std::uint16_t tx = 0, std::uint16_t rx = 0,
   return out;
 }
 
-/// The notes and faults.
+/// The notes and faults; each says what it means and what mends it.
 inline Codes codes(const std::vector<Finding>& findings) {
   Codes out;
-  for (const auto& f : findings)
-    if (f.level != Finding::Level::ok) out.push_back(f.code);
+  for (const auto& f : findings) {
+    if (f.level == Finding::Level::ok) continue;
+    out.push_back(f.code);
+    EXPECT_FALSE(f.means.empty()) << f.code;
+    EXPECT_FALSE(f.mend.empty()) << f.code;
+  }
   return out;
 }
 

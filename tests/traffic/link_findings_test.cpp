@@ -71,8 +71,18 @@ TEST(LinkFindings, SayHowAnInterfaceComesUp) {
 }
 
 TEST(LinkFindings, TellAMissingAdapterFromAMissingKernel) {
-  EXPECT_EQ(codes(no_interface_findings(true)), Codes{"no-adapter"});
-  EXPECT_EQ(codes(no_interface_findings(false)), Codes{"no-kernel-can"});
+  EXPECT_EQ(codes(no_interface_findings(true, {})), Codes{"no-adapter"});
+  EXPECT_EQ(codes(no_interface_findings(false, {})), Codes{"no-kernel-can"});
+}
+
+TEST(LinkFindings, NameTheSerialPortsThatNeedNoDriver) {
+  for (const bool kernel_has_can : {false, true}) {
+    const auto none = no_interface_findings(kernel_has_can, {}).front().mend;
+    EXPECT_NE(none.find("`scan -b slcan:PORT@500k`; none is plugged in now"), std::string::npos) << none;
+    const auto two = no_interface_findings(kernel_has_can, {"/dev/ttyACM0", "/dev/ttyUSB1"}).front().mend;
+    EXPECT_NE(two.find("`scan -b slcan:/dev/ttyACM0@500k`"), std::string::npos) << two;
+    EXPECT_NE(two.find("USB serial ports: /dev/ttyACM0, /dev/ttyUSB1"), std::string::npos) << two;
+  }
 }
 
 }  // namespace
