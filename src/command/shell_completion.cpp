@@ -29,8 +29,8 @@ _servoctl() {
   case ${answer[0]-} in
     files) compopt -o default ;;
     open) compopt -o nospace ;;
-    # At the second Tab bash only lists: nothing of this is put into the line.
-    note*) [[ ${COMP_TYPE-} != 63 ]] || COMPREPLY=("(${answer[0]#note })") ;;
+    # At the second Tab bash only lists; a single entry it would put into the line, so there are two.
+    note*) [[ ${COMP_TYPE-} != 63 ]] || COMPREPLY=("(${answer[0]#note })" " ") ;;
   esac
 }
 complete -o nosort -F _servoctl servoctl 2>/dev/null || complete -F _servoctl servoctl

@@ -3,6 +3,7 @@
 usage: completion_test.py SERVOCTL SOURCE_DIR"""
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -92,6 +93,7 @@ LISTS = [
     ("scan -b 'sim:gsd600@1?", r"delay=\W+time until an answer"),
     ("-d gsd600 --lang zh param get Pn021", r"Pn0214\W+速度环增益 1"),
     ("read -n 9 ", r"-d FAMILY before it tells"),
+    ("jog --for=", r"--for: how long"),
 ]
 
 # What stands above the lists of zsh, in the order of the headings.
@@ -148,6 +150,10 @@ class Shell:
         before = len(failures)
         self.terminal.type("servoctl " + typed + "\t" * self.tabs)
         self.look(pattern)
+        # What is listed stays out of the line: with Enter it is run as it was typed.
+        self.terminal.type(("'" if typed.count("'") % 2 else "") + "\r")
+        words = shlex.split(typed + "'" * (typed.count("'") % 2))
+        self.look("RAN" + re.escape("".join(f"<{word}>" for word in words) + "<end>"))
         self.begin_anew(before, typed)
 
     def begin_anew(self, before, typed):
