@@ -9,10 +9,8 @@ namespace {
 constexpr int kNone = -1;
 /// Bytes from which on a transfer is worth a word while it goes on.
 constexpr std::size_t kLongTransfer = 1000;
-/// Requests from which on a list is; a scan asks 127 nodes at once.
-constexpr std::size_t kLongList = 128;
-/// The same where one is asked after the other.
-constexpr std::size_t kLongTurns = 40;
+/// Requests one after the other from which on a list is; a scan asks 127 nodes at once.
+constexpr std::size_t kLongList = 40;
 
 }  // namespace
 
@@ -30,8 +28,11 @@ TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
       lane.node = requests[i].node;
       lane.objects = session.lend_channel(requests[i].node);
     }
-    channels_[static_cast<std::size_t>(channel_of_node_[node])].requests.push_back(i);
+    auto& own = channels_[static_cast<std::size_t>(channel_of_node_[node])].requests;
+    own.push_back(i);
+    in_turn_ = std::max(in_turn_, own.size());
   }
+  if (session.network().takes_turns()) in_turn_ = requests.size();
 }
 
 std::vector<Result<Bytes>> TransferRun::run() {
@@ -138,8 +139,7 @@ void TransferRun::finish(Lane& channel, Result<Bytes> result) {
   if (request.ended != nullptr) *request.ended = session_->network().stepped_at();
   --open_;
   const auto& options = session_->options();
-  const auto long_list = session_->network().takes_turns() ? kLongTurns : kLongList;
-  if (options.list_progress && requests_.size() >= long_list)
+  if (options.list_progress && in_turn_ >= kLongList)
     options.list_progress(requests_.size() - open_, requests_.size(), session_->received_at());
   if (!place && (silent || request.data)) skip_rest(channel, place.error(), silent);
   start(channel);

@@ -25,10 +25,13 @@ servoctl = os.path.abspath(sys.argv[1])
 BAR, ELAPSED, LATEST = r"\[#*\.*\] +\d+%", r"\d s so far(?!, )", r"\d s so far, \d+ (s|min) at most"
 ANY = "|".join((BAR, ELAPSED, LATEST))
 LEFT = BAR + r", \d+ (s|min) left"
+COUNTED = BAR + r" \(\d+/\d+\), \d+ (s|min) left"
 # A node that does not answer is waited for.
 SILENT = " -b sim:gsd600@1 -n 9 -d gsd600 --timeout 900ms"
 THERE = " -b sim:gsd600@1 -n 1 -d gsd600"
 TURN = THERE + " --turn 131072"
+# Many answers of a drive that takes its time.
+SLOW = " -b sim:gsd600@1?delay=5ms -n 1 -d gsd600"
 QUICK = "reads data or files of this machine, and is done in less"
 KERNEL = "needs an interface of the kernel, which a machine need not have"
 RING = "a slave follows in a few cycles, and one that does not is given up soon"
@@ -39,11 +42,11 @@ LINES = {
     "doctor": ("doctor -b sim:gsd600@1", LEFT),
     "info": ("info" + SILENT, ELAPSED),
     "status": ("status" + SILENT, ELAPSED),
-    "read": ("read 0x6041" + SILENT, ELAPSED),
+    "read": ("read 0x60*" + SLOW.replace("5ms", "30ms"), COUNTED),
     "write": ("write 0x607A 1" + SILENT, ELAPSED),
-    "param get": ("param get Pn0202" + SILENT, ELAPSED),
+    "param get": ("param get 'Pn*'" + SLOW, COUNTED),
     "param set": ("param set Pn0214 45Hz" + SILENT, ELAPSED),
-    "backup": ("backup late.json" + SILENT, ELAPSED),
+    "backup": ("backup late.json" + SLOW, COUNTED),
     "cabinet init": ("cabinet init new.toml -b sim:gsd600@1 --timeout 900ms", ELAPSED),
     "cabinet show": ("cabinet show --cabinet away.toml --timeout 900ms", ANY),
     "cabinet plan": ("cabinet plan --cabinet away.toml --timeout 900ms", ANY),
@@ -51,8 +54,8 @@ LINES = {
     "cabinet backup": ("cabinet backup --cabinet away.toml --timeout 900ms", ANY),
     "cabinet swap": ("cabinet swap lift --from 7 --cabinet away.toml --timeout 900ms", ANY),
     "diff": ("diff factory node:9" + SILENT.replace("-n 9", ""), ELAPSED),
-    "verify": ("verify factory" + SILENT, ELAPSED),
-    "restore": ("restore good.json" + SILENT, ELAPSED),
+    "verify": ("verify factory" + SLOW, COUNTED),
+    "restore": ("restore good.json" + SLOW, COUNTED),
     "clone": ("clone --from 9 --to 1 -d gsd600 -b sim:gsd600@1 --timeout 900ms", ELAPSED),
     "address": ("address 5 --wait 3s -n 1 -d da200 -b sim:da200@1", LATEST),
     "lss scan": ("lss scan -b sim:sv2@255,da200@255,gsd600@1?lss", r"\r\x1b\[K(?!\d).{10,}\r"),
@@ -100,7 +103,7 @@ LINES = {
     "test jog": ("test jog 60rpm --limit 600rpm" + TURN, BAR),
     "test home": ("test home 17 --spread 5 --limit 900rpm --window 5rev -n 1 -d sv2 -b sim:sv2@1", LATEST),
     "test all": ("test all 60rpm --no-home --limit 600rpm --window 5rev" + TURN, BAR),
-    "report": ("report late.html" + SILENT, ELAPSED),
+    "report": ("report late.html" + SLOW, COUNTED),
     "sync start": ("sync start --period 10ms --for 2s -b sim:gsd600@1", LEFT),
     "watch": ("watch 0x6041 --for 2s -o jsonl" + THERE, LEFT),
     "scope": ("scope 0x6064 --for 2s" + THERE, LEFT),

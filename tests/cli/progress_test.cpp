@@ -182,6 +182,16 @@ TEST(Progress, TellsOfAWaitOnlyWhereWhatToldMoreIsOld) {
   }
 }
 
+TEST(Progress, LeavesTheTurnToAListThoughEachAnswerComesBehindAWait) {
+  Waiting at;
+  at.pass(0ms);
+  for (std::size_t done = 1; done < 40; ++done) {
+    at.pass(100ms);
+    at.progress.update_list(done, 40, at.session.now() + 20ms);
+  }
+  EXPECT_EQ(at.console.progress.back(), "[############################..]  95% (38/40), 1 s left");
+}
+
 TEST(Progress, CountsAWaitInAWaitFromItsOwnBegin) {
   Waiting at;
   at.pass(0ms);

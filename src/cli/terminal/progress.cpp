@@ -67,17 +67,19 @@ bool Progress::is_due(TimePoint now) {
 }
 
 void Progress::update(std::size_t done, std::optional<std::size_t> total, TimePoint now) {
+  told_ = now;
   if (!is_due(now)) return;
   const std::chrono::duration<double> elapsed = now - *begin_;
-  told_ = now;
   show(line_of(done, total, static_cast<double>(done) / elapsed.count()),
        time_left(done, total.value_or(0), elapsed.count()));
 }
 
 void Progress::update_list(std::size_t done, std::size_t total, TimePoint now) {
-  if (total == 0 || !is_due(now)) return;
-  const std::chrono::duration<double> elapsed = now - *begin_;
+  if (total == 0) return;
+  // What is told too soon for the screen is told all the same: a wait does not take its turn.
   told_ = now;
+  if (!is_due(now)) return;
+  const std::chrono::duration<double> elapsed = now - *begin_;
   show(fmt::format("{} ({}/{})", bar(done, total), done, total), time_left(done, total, elapsed.count()));
 }
 
@@ -116,8 +118,8 @@ void Progress::show(std::string line, const std::string& left) {
 }
 
 void Progress::update_line(std::string_view line, TimePoint now) {
-  if (!is_due(now)) return;
   told_ = now;
+  if (!is_due(now)) return;
   console_->show_progress(console_->in_language(line));
 }
 
