@@ -111,6 +111,42 @@ TEST_F(Completing, OffersUnitsBehindANumber) {
   EXPECT_TRUE(offers_word("torque 5", "5%"));
 }
 
+TEST_F(Completing, SaysWhichUnitsNeedTheCountsOfATurn) {
+  EXPECT_EQ(complete("move 90", shell).candidates.front().word, "90inc");
+  EXPECT_EQ(hint("move 90", "90deg"), "needs --turn, or `units learn` before");
+  EXPECT_EQ(complete("jog 60", shell).candidates.front().word, "60inc/s");
+  EXPECT_EQ(hint("move --turn 131072 90", "90deg"), "");
+  EXPECT_FALSE(offers_word("move --turn 131072 90", "90inc"));
+  EXPECT_EQ(hint("move -d ts 90", "90deg"), "needs --turn");
+  EXPECT_EQ(hint("jog -d ts 60", "60rpm"), "") << "it counts in rpm by itself";
+  EXPECT_EQ(hint("move -d sv2 90", "90deg"), "") << "the drive tells it";
+}
+
+TEST_F(Completing, OffersThePresetsOfTheFamily) {
+  EXPECT_TRUE(offers_word("pdo preset ", "lmc058"));
+  EXPECT_FALSE(offers_word("pdo preset ", "csp"));
+  EXPECT_TRUE(offers_word("pdo preset -d sv2 ", "csp"));
+  EXPECT_TRUE(offers_word("pdo preset -d ts t", "tpdo"));
+}
+
+TEST_F(Completing, GoesOnWithAnAddressInTheFormThatWasBegun) {
+  EXPECT_EQ(hint("read 6099h.", "6099h.1"), hint("read 0x6099:", "0x6099:1"));
+  EXPECT_TRUE(offers_word("read 6099", "6099h.2"));
+  EXPECT_TRUE(offers_word("read 604", "6041h"));
+  EXPECT_TRUE(offers_word("read 2005h.2", "2005h.20h"));
+  EXPECT_TRUE(offers_word("write 60ffh", "60FFh"));
+  EXPECT_FALSE(offers_word("read 0x6099:", "6099h.1"));
+  EXPECT_FALSE(offers_word("read 6099h.", "0x6099:1"));
+}
+
+TEST_F(Completing, LeavesOutWhatTheManualReserves) {
+  EXPECT_TRUE(offers_word("param set Pn0000=", "Pn0000=5"));
+  EXPECT_FALSE(offers_word("param set Pn0000=", "Pn0000=6"));
+  EXPECT_FALSE(offers_word("param set Pn0000 6", "6"));
+  EXPECT_FALSE(offers_word("param set Pn0000 Res", "Reserved"));
+  EXPECT_FALSE(offers_word("mode -d dm ", "0"));
+}
+
 TEST_F(Completing, OffersNodesThatWereHeardAndGoesOnInAList) {
   EXPECT_TRUE(offers_word("use ", "1"));
   EXPECT_FALSE(offers_word("use ", "5"));

@@ -75,6 +75,16 @@ std::string family_said_before(const Settings& settings, const Shell& shell) {
   return common_family(families);
 }
 
+/// By each of the axes that are named.
+bool cabinet_says_turn(const Settings& settings, Shell& shell) {
+  if (!names_axes(settings.nodes)) return false;
+  const auto cabinet = shell.cabinet(settings);
+  if (!cabinet || *cabinet == nullptr) return false;
+  const auto axes = (*cabinet)->select(settings.nodes);
+  return axes &&
+         std::all_of(axes->begin(), axes->end(), [](const auto* axis) { return axis->turn.has_value(); });
+}
+
 }  // namespace
 
 std::string family_in_cabinet(const Settings& settings, Shell& shell) {
@@ -112,6 +122,7 @@ BegunPlace begun_place(const std::vector<std::string>& words, Shell& shell) {
   if (out.family.empty() && as_before) out.family = shell.family_in_use();
   if (out.family.empty()) out.family = family_in_cell(line);
   if (out.family.empty()) out.family = family_said_before(line, shell);
+  out.turn_said = value_of(words, "--turn", {}).has_value() || cabinet_says_turn(line, shell);
   return out;
 }
 

@@ -13,14 +13,15 @@ namespace servoctl::cli {
 
 /// Where a line that is being typed goes, as far as it can be told without asking a drive.
 struct BegunPlace {
-  Settings settings;      ///< What the options before the cursor say, over the defaults.
-  std::string family;     ///< As after -d; empty: not known.
-  bool in_shell = false;  ///< It is the line of a shell, which knows files itself, and what `~/` is.
+  Settings settings;       ///< What the options before the cursor say, over the defaults.
+  std::string family;      ///< As after -d; empty: not known.
+  bool turn_said = false;  ///< --turn stands in the line, or the cabinet file says it of its axes.
+  bool in_shell = false;   ///< It is the line of a shell, which knows files itself, and what `~/` is.
 };
 
-/// Reads --bus, --node, --drive, --cabinet and --lang among the words. The family is that of -d, of the axes
-/// of the cabinet file, of the drives that sim: names, or what was said of the drive at this bus and node in
-/// an earlier line.
+/// Reads --bus, --node, --drive, --cabinet, --lang and --turn among the words. The family is that of -d, of
+/// the axes of the cabinet file, of the drives that sim: names, or what was said of the drive at this bus and
+/// node in an earlier line.
 BegunPlace begun_place(const std::vector<std::string>& words, Shell& shell);
 
 /// Where in a URL simulated drives are named, behind `sim:`, `coe:sim:` or `modbus:sim:`; empty for any

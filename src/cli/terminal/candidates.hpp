@@ -69,6 +69,7 @@ class Candidates {
   void add_node_numbers();
   std::string list_before() const;
   void add_units(std::string_view of);
+  void add_motion_units(std::string_view object, std::span<const char* const> units);
   void add_words_of(const command::Command& command, const command::Parameter& parameter);
   void add_known_word(const command::Command& command, const command::Parameter& parameter);
   std::string heard_of(std::uint8_t node);

@@ -42,6 +42,14 @@ std::string address_of(ObjectAddress address, bool plain) {
   return plain ? fmt::format("0x{:04X}", address.index) : to_string(address);
 }
 
+/// As `begun` goes on: `0x6099:1`, or `6099h.1` where no `0x` was begun.
+std::string address_like(std::string_view begun, ObjectAddress address, bool plain) {
+  auto out = address_of(address, plain);
+  if (begun == "0" || begun.starts_with("0x") || begun.starts_with("0X")) return out;
+  const auto sub = plain ? std::string() : "." + out.substr(out.find(':') + 1);
+  return fmt::format("{:04X}h{}", address.index, sub);
+}
+
 bool begins_as_number(std::string_view text) {
   return !text.empty() &&
          (text.front() == '-' || text.front() == '.' || (text.front() >= '0' && text.front() <= '9'));
@@ -59,6 +67,9 @@ bool is_one_word(std::string_view text) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
   });
 }
+
+/// The manual names it, and gives it no meaning.
+bool is_reserved(const od::EnumLabel& label) { return starts_with_nocase(label.label, "reserved"); }
 
 std::string range_of(const drive::Meaning& meaning) {
   auto out = drive::range_text(meaning);
@@ -86,7 +97,7 @@ void Candidates::add_addresses() {
   const auto group = begin_group(Candidate::Group::objects);
   for (const auto& object : profile()->dictionary.objects())
     for (const auto& entry : object.entries)
-      add(address_of(entry.address, object.entries.size() == 1),
+      add(address_like(begun_, entry.address, object.entries.size() == 1),
           name_in(chinese_, object.entries.size() == 1 ? object.name : object.name + ": " + entry.name,
                   entry.name_zh));
   begin_group(group);
@@ -120,11 +131,13 @@ void Candidates::add_values_of(std::string_view object) {
   if (begins_as_number(begun_)) {
     if (meaning.labels != nullptr)
       for (const auto& label : *meaning.labels)
-        add(std::to_string(label.value), name_in(chinese_, label.label, label.label_zh));
+        if (!is_reserved(label))
+          add(std::to_string(label.value), name_in(chinese_, label.label, label.label_zh));
     return add_units(meaning.unit);
   }
   if (meaning.labels != nullptr) {
     for (const auto& label : *meaning.labels) {
+      if (is_reserved(label)) continue;
       const auto number = std::to_string(label.value);
       const auto name = name_in(chinese_, label.label, label.label_zh);
       const auto words = drive::label_words(label.label);
@@ -180,6 +193,8 @@ void Candidates::add_words_of(const command::Command& command, const command::Pa
   if (is("sim", "drives")) add_cells(0);
   if (is("cabinet swap", "axis")) add_axes();
   if (is("clone", "--from") || is("clone", "--to") || is("cabinet swap", "--from")) add_node_numbers();
+  if (const auto* known = is("pdo preset", "preset") ? profile() : nullptr; known != nullptr)
+    for (const auto& preset : known->rules.pdo.presets) add(preset.name);
   const bool of_groups = is("backup", "--only") || is("param list", "pattern");
   if (is("backup", "--only"))
     for (const auto* part : {"communication", "pdo", "params", "changed"}) add(part);
@@ -195,12 +210,31 @@ void Candidates::add_known_word(const command::Command& command, const command::
     add_values_of(value.object);
     const auto number = begun_.substr(0, begun_.find_first_not_of("-+.0123456789"));
     if (!has_digit(number)) continue;
-    if (value.object == "607Ah" || value.object == "607Ch")
-      for (const auto* unit : kPositionUnits) add(number + unit);
+    if (value.object == "607Ah" || value.object == "607Ch") add_motion_units(value.object, kPositionUnits);
     if (value.object == "60FFh" || value.object == "6081h" || value.object.starts_with("6099h"))
-      for (const auto* unit : kSpeedUnits) add(number + unit);
+      add_motion_units(value.object, kSpeedUnits);
     if (value.object == "6071h") add(number + "%");
   }
+}
+
+/// The number that was begun. Where it may be that nobody knows what a turn is in counts, these come first,
+/// and beside the others stands what they need.
+void Candidates::add_motion_units(std::string_view object, std::span<const char* const> units) {
+  const auto number = begun_.substr(0, begun_.find_first_not_of("-+.0123456789"));
+  const auto* known = profile();
+  const auto target = drive::resolve(known, object);
+  const auto meaning = known != nullptr && target ? drive::meaning(*target, 0) : drive::Meaning{};
+  std::string_view needs;
+  if (meaning.measure && !place_.turn_said) {
+    const auto ways = known->rules.units.find(*meaning.measure);
+    if (ways == known->rules.units.end())
+      needs = "needs --turn";
+    else if (std::any_of(ways->second.begin(), ways->second.end(),
+                         [](const auto& way) { return way.learned; }))
+      needs = "needs --turn, or `units learn` before";
+  }
+  if (!needs.empty()) add(number + std::string(meaning.unit), "the drive's own unit");
+  for (const auto* unit : units) add(number + unit, needs);
 }
 
 }  // namespace servoctl::cli
