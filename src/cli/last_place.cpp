@@ -47,12 +47,14 @@ std::string in_words(const LastPlace& place, bool chinese) {
   const auto add = [&](std::string_view word, const std::string& name) {
     if (!name.empty()) append(out, fmt::format("{} {}", chinese ? report::chinese_word(word) : word, name));
   };
-  add("bus", place.bus);
-  if (names_axes(place.nodes))
+  // Where an axis is, and what it is, the cabinet file says.
+  if (names_axes(place.nodes)) {
     append(out, place.nodes);
-  else
+  } else {
+    add("bus", place.bus);
     add("node", place.nodes);
-  add("family", place.drive);
+    add("family", place.drive);
+  }
   add("cabinet", place.cabinet);
   return printable(out);
 }

@@ -129,6 +129,12 @@ with tempfile.TemporaryDirectory() as state:
     t.type("\x04")
     expect("exit code of Ctrl-D", 0, t.exit_code())
 
+    # In the window it is broken at a blank, and what goes on stands below where its text began.
+    t = Terminal(servoctl, "--bus", "sim:gsd600@1?fault=0xFF00@1s", "-n", "1", "-d", "gsd600", state=state, size=(24, 80))
+    t.see(r"\* node 1: EMCY 0xFF00 [^\r\n]{1,59}[^\s]\r?\n  [^\s][^\r\n]*\r?\n")
+    t.type("\x04")
+    t.exit_code()
+
     t = Terminal(servoctl, "--bus", "can77", state=state)
     t.see(r"error: .*can77")
     expect("exit code without a bus", 3, t.exit_code())

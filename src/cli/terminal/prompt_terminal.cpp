@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "cli/terminal/fitted.hpp"
 #include "cli/terminal/signals.hpp"
 
 namespace servoctl::cli {
@@ -60,9 +61,9 @@ PromptTerminal::Change PromptTerminal::take_change() {
 
 void PromptTerminal::say(std::string_view text) {
   if (shows_output_)
-    console_->out(text);
+    console_->out(fitted(text, console_->width()));
   else
-    console_->err(text);
+    console_->err(fitted(text, console_->err_width()));
 }
 
 }  // namespace servoctl::cli

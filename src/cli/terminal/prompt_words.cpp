@@ -76,21 +76,26 @@ void shorten(std::string& part, std::size_t least, std::size_t too_wide) {
   if (too_wide > 0 && width > least) part = clip(part, std::max(least, width - std::min(width, too_wide)));
 }
 
-/// In five eighths of the window where that can be: the bus gives way, then the family, which stays a guess
-/// where it is one, then the name of the program; the nodes and their state never do.
+/// In five eighths of the window where that can be: the bus gives way, then the name of the program, then the
+/// family, of which enough stays to know it by, and that it is a guess; the nodes and their state never do.
 std::string in_window(Parts parts, std::size_t window) {
   constexpr std::size_t kLeastBus = 8;
-  constexpr std::size_t kLeastFamily = 4;
+  constexpr std::size_t kLeastFamily = 6;
+  constexpr std::size_t kLeastSaved = 2;
   const auto most = window == 0 ? std::string::npos : window * 5 / 8;
-  const auto too_wide = [&] {
-    const auto width = display_width(parts.text(true));
+  const auto too_wide = [most](const Parts& all, bool with_program) {
+    const auto width = display_width(all.text(with_program));
     return width > most ? width - most : 0;
   };
-  shorten(parts.bus, kLeastBus, too_wide());
+  auto named = parts;
+  shorten(named.bus, kLeastBus, too_wide(named, true));
+  if (too_wide(named, true) == 0) return named.text(true);
+  shorten(parts.bus, kLeastBus, too_wide(parts, false));
   const bool guessed = parts.family.ends_with('?');
-  shorten(parts.family, kLeastFamily, too_wide());
+  if (display_width(parts.family) >= kLeastFamily + kLeastSaved)
+    shorten(parts.family, kLeastFamily, too_wide(parts, false));
   if (guessed && !parts.family.ends_with('?')) parts.family += '?';
-  return parts.text(too_wide() == 0);
+  return parts.text(false);
 }
 
 /// Bus and family of the axes, as the file says them; false where it cannot be used.
