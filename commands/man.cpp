@@ -27,7 +27,7 @@ const Command kMan{
     .details =
         "As a command of its own on a terminal it is shown by `man -l -`, with the pager of that. At the prompt, "
         "in a pipe, with --no-pager, or without a program `man` it is the source. An installed servoctl includes "
-        "it: `man servoctl`.",
+        "it: `man servoctl`. It is in English, with `--lang zh` as well.",
     .parameters = {},
     .examples = kManExamples,
     .needs = Needs::nothing,

@@ -84,6 +84,13 @@ std::string name_of_node(const Context& context, std::uint8_t node) {
   return std::to_string(node);
 }
 
+/// A panel parameter goes by its number; that of an object may have been typed, and says little.
+std::string shown_name(const drive::Target& target, const std::string& typed) {
+  if (target.parameter != nullptr) return typed;
+  const auto name = target.label();
+  return to_string(target.address) + (name.empty() ? "" : " " + name);
+}
+
 }  // namespace
 
 /// Asked for once between two restarts.
@@ -150,6 +157,7 @@ void LastWrite::look_at(const Context& context, const settings::NamedValue& name
   pending_->values.push_back({.node = node,
                               .target = name_of_node(context, node),
                               .name = named.name,
+                              .shown = shown_name(*target, named.name),
                               .object = target->address,
                               .type = named.type ? std::string(od::name(*named.type)) : std::string(),
                               .before = *before,
@@ -203,6 +211,7 @@ void LastWrite::turn_round(Line line) {
     std::swap(value.before_shown, value.after_shown);
     if (value.before_text.empty()) line.why_not = "what it held before cannot be written as a text";
   }
+  line.turned = !line.turned;
   line_ = std::move(line);
 }
 

@@ -23,6 +23,7 @@ class LastWrite {
     std::uint8_t node = 0;
     std::string target;  ///< What the node is called after -n: its number, or the axis.
     std::string name;    ///< Of the object, as it was typed.
+    std::string shown;   ///< Of the object, as people know it.
     ObjectAddress object;
     std::string type;  ///< As after --type; empty where the dictionary says it.
     Bytes before;
@@ -46,6 +47,7 @@ class LastWrite {
     show::AxisNames names;    ///< Settings::names.
     bool keep = false;        ///< --keep was given.
     bool unlock = false;      ///< --unlock was given.
+    bool turned = false;      ///< `undo` wrote it: to put it back brings the newer values again.
     std::vector<Value> values;
     std::string why_not;  ///< Why it is not put back; empty: it can be.
   };

@@ -80,15 +80,16 @@ std::string undo_question(const WrittenLine& line) {
   for (const auto& value : line.values) {
     if (!out.empty()) out += "; ";
     const auto after = value.after_shown.empty() ? "what was written" : value.after_shown;
-    out +=
-        value.target == std::to_string(value.node)
-            ? fmt::format("{} on node {}: {} in place of {}", value.name, value.node, value.before_shown,
-                          after)
-            : fmt::format("{} on {}: {} in place of {}", value.name, value.target, value.before_shown, after);
+    out += value.target == std::to_string(value.node)
+               ? fmt::format("{} on node {}: {} in place of {}", value.shown, value.node, value.before_shown,
+                             after)
+               : fmt::format("{} on {}: {} in place of {}", value.shown, value.target, value.before_shown,
+                             after);
   }
   const bool blind = std::any_of(line.values.begin(), line.values.end(),
                                  [](const WrittenValue& value) { return value.identity.by_registers; });
   return std::string(blind ? "Over Modbus nothing tells whether it is the same drive. " : "") +
+         (line.turned ? "This takes back the last `undo`. " : "") +
          (line.keep ? fmt::format("Put back, and keep at power-off, {}?", out)
                     : fmt::format("Put back {}?", out));
 }
