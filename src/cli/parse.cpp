@@ -8,8 +8,8 @@
 #include "cli/cli11.hpp"
 
 #include "base/text.hpp"
+#include "cli/unknown_command.hpp"
 #include "command/help_text.hpp"
-#include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::cli {
@@ -217,38 +217,6 @@ LineParser& parser_of(const Command& command) {
   return parsers.try_emplace(&command, command).first->second;
 }
 
-/// Words of other tools for what every `lss` command does by itself (CiA 305: switch state).
-bool selects_by_itself(const std::vector<std::string>& words, std::size_t first) {
-  if (words[first] != "lss" || first + 1 >= words.size()) return false;
-  const auto& word = words[first + 1];
-  return word == "select" || word == "switch" || word == "mode" || word.starts_with("config");
-}
-
-tl::unexpected<Error> unknown_command(const std::vector<std::string>& words, std::size_t first) {
-  std::vector<std::string> paths;
-  std::vector<std::string> in_group;
-  for (const auto* command : command::registry()) {
-    paths.emplace_back(command->path);
-    if (split(command->path, ' ').size() > 1 && split(command->path, ' ').front() == words[first])
-      in_group.push_back(fmt::format("`{}`", command->path));
-  }
-  if (!in_group.empty()) {
-    const auto said = first + 1 < words.size() ? words[first] + " " + words[first + 1] : words[first];
-    const auto* const why =
-        selects_by_itself(words, first)
-            ? "each `lss` command selects its slave by itself, and lets it go in the end; "
-            : "";
-    return fail(Errc::usage, fmt::format("'{}' is not a command", said),
-                why + fmt::format("use {}", one_of(in_group)));
-  }
-  if (const auto* word = command::find_prompt_word(words[first]); word != nullptr)
-    return fail(Errc::usage, fmt::format("'{}' is a word of the prompt, and no command", word->name),
-                fmt::format("`servoctl` alone opens the prompt; `help {}` says what it does", word->name));
-  auto hint = did_you_mean(words[first], paths);
-  if (hint.empty()) hint = "`help` lists the commands";
-  return fail(Errc::usage, fmt::format("'{}' is not a command", words[first]), std::move(hint));
-}
-
 }  // namespace
 
 CommandMatch match_command(const std::vector<std::string>& words) {
@@ -276,7 +244,7 @@ Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
       }
     return fail(Errc::usage, "a command is missing", "`help` lists the commands");
   }
-  if (match.command == nullptr) return unknown_command(words, match.first);
+  if (match.command == nullptr) return fail(unknown_command(words, match.first));
   auto rest = words;
   const auto begin = rest.begin() + static_cast<std::ptrdiff_t>(match.first);
   rest.erase(begin, begin + static_cast<std::ptrdiff_t>(match.used));

@@ -26,6 +26,22 @@ TEST(ParseLine, TakesGlobalOptionsOnBothSidesOfTheCommand) {
   }
 }
 
+TEST(ParseLine, SaysWhichCommandMayBeMeant) {
+  const std::pair<Words, std::string> lines[] = {
+      {{"parm", "get"}, "'parm' is not a command: did you mean param get"},
+      {{"parm", "-n", "1"}, "'parm' is not a command: did you mean param"},
+      {{"fault", "rest"}, "'fault rest' is not a command: did you mean fault reset"},
+      {{"param", "gte"}, "'param gte' is not a command: did you mean param get"},
+      {{"param", "-d", "gsd600"}, "'param' is not a command: use `param list`, `param get`, "},
+      {{"param", "frobnicated"}, "'param frobnicated' is not a command: use `param list`, "},
+      {{"wait", "300ms"}, "'wait' is a word of batch files, and no command: `run FILE` runs one"}};
+  for (const auto& [words, said] : lines) {
+    const auto line = parse_line(words);
+    ASSERT_FALSE(line);
+    EXPECT_EQ((line.error().message + ": " + line.error().hint).substr(0, said.size()), said);
+  }
+}
+
 TEST(ParseLine, LeavesValuesAsTheyAreWritten) {
   const auto line = parse_line({"write", "6040h", "-010"});
   ASSERT_TRUE(line) << line.error().message;

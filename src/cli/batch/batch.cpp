@@ -135,6 +135,12 @@ class BatchParser {
 
 }  // namespace
 
+bool is_batch_word(std::string_view word) {
+  return word == "for" || word == "end" ||
+         std::any_of(kKeywords.begin(), kKeywords.end(),
+                     [&](const Keyword& one) { return one.word == word; });
+}
+
 Batch parse_batch(std::string_view text) { return BatchParser().parse(text); }
 
 bool is_variable_name(std::string_view name) {

@@ -37,6 +37,9 @@ struct Batch {
 /// CRLF, an optional byte order mark.
 Batch parse_batch(std::string_view text);
 
+/// Whether a line of such a file may begin so, though it is no command.
+bool is_batch_word(std::string_view word);
+
 /// Whether a variable may have this name: letters, digits and `_`, no digit first.
 bool is_variable_name(std::string_view name);
 
