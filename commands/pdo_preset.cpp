@@ -12,7 +12,9 @@ namespace {
 using namespace command;
 
 constexpr Parameter kPdoPresetParameters[] = {
-    {.name = "preset", .help = "name of the mapping, such as pp, pv or home; which there are depends on the family", .required = true},
+    {.name = "preset",
+     .help = "name of the mapping, such as pp, pv or home; which there are depends on the family",
+     .required = true},
     kKeepOption,
     kUnlockOption,
 };
