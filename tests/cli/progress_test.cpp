@@ -189,7 +189,7 @@ TEST(Progress, LeavesTheTurnToAListThoughEachAnswerComesBehindAWait) {
     at.pass(100ms);
     at.progress.update_list(done, 40, at.session.now() + 20ms);
   }
-  EXPECT_EQ(at.console.progress.back(), "[############################..]  95% (38/40), 1 s left");
+  EXPECT_EQ(at.console.progress.back(), "[#############################.]  97% (39/40), 1 s left");
 }
 
 TEST(Progress, CountsAWaitInAWaitFromItsOwnBegin) {
