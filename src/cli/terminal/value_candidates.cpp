@@ -160,9 +160,8 @@ void Candidates::add_values_of(std::string_view object) {
   }
   // A number is up to the user.
   note_ = range_of(meaning);
-  const auto* parameter = target->parameter;
-  if (parameter != nullptr && parameter->default_value)
-    append(note_, "default " + od::to_string(*parameter->default_value));
+  if (const auto* known_as = target->parameter; known_as != nullptr && known_as->default_value)
+    append(note_, "default " + od::to_string(*known_as->default_value));
 }
 
 /// The number that was begun, in the units that it may be written in.
