@@ -23,9 +23,11 @@ std::vector<std::string> known_commands() {
 }
 
 /// Words of other tools for what every `lss` command does by itself (CiA 305: switch state).
-bool selects_by_itself(const std::string& said) {
-  for (const std::string_view word : {"lss select", "lss switch", "lss mode", "lss config"})
-    if (said.starts_with(word)) return true;
+bool selects_by_itself(std::string_view said) {
+  constexpr std::string_view kGroup = "lss ";
+  if (!said.starts_with(kGroup)) return false;
+  for (const std::string_view word : {"select", "switch", "mode", "config"})
+    if (said.substr(kGroup.size()).starts_with(word)) return true;
   return false;
 }
 
