@@ -211,7 +211,7 @@ void explain_marks(Table& table) {
   });
   if (any)
     table.below.emplace_back(
-        "behind ? the manual does not state it, behind ! it states another value as well; `explain NAME` tells more");
+        "a ? marks what the manual does not state, a ! what it states in two ways; `explain NAME` tells more");
 }
 
 Error located(Error error, std::uint8_t node, ObjectAddress object) {
