@@ -37,7 +37,8 @@ std::string clip(std::string_view text, std::size_t width);
 
 /// `text` broken at spaces, and beside East Asian wide characters, so that no line is wider than `width`
 /// columns (0: not broken); lines that this makes are indented. None begins with a mark such as `，` or `）`,
-/// and what stands in backticks is not broken where there is room for it. Each line of `text` is broken by itself.
+/// and what stands in backticks is not broken where there is room for it. Each line of `text` is broken by
+/// itself.
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width);
 
 /// Levenshtein distance with transpositions, ASCII case ignored.
