@@ -193,7 +193,8 @@ def check_files(folder):
     """Every file that was written there: what it is tells its first key."""
     global documents
     met = set()
-    files = glob.glob(os.path.join(folder, "**/*.js*"), recursive=True) + glob.glob(os.path.join(folder, "**/*.journal"), recursive=True)
+    # What was killed leaves locks, too.
+    files = [each for each in glob.glob(os.path.join(folder, "**/*"), recursive=True) if each.endswith((".json", ".jsonl", ".journal"))]
     for file in sorted(each for each in files if not each.startswith(os.path.join(folder, "tests"))):  # Those were written by hand.
         with open(file, encoding="utf-8") as text:
             document = read(text.read())
