@@ -140,7 +140,7 @@ line.close()
 
 # A device that goes while it is watched, and nobody there.
 drive = serve(f"modbus://127.0.0.1:{port}", "ts@1")
-watching = subprocess.Popen([servoctl, "-b", f"modbus://127.0.0.1:{port}", "watch", "Dn_00", "-n", "1", "-o", "jsonl"], env=env,
+watching = subprocess.Popen([servoctl, "-b", f"modbus://127.0.0.1:{port}", "watch", "Dn_00", "--for", "3s", "-n", "1", "-o", "jsonl"], env=env,
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 watching.stdout.readline()
 drive.kill()

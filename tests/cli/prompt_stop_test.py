@@ -82,7 +82,7 @@ def at_the_prompt(state):
     t.see(r"statusword")
     job.stop("in a line")
     job.go_on()
-    t.see(r"fg\s[\s\S]*\nservoctl [^>]*> ")
+    t.see(r"fg\s[\s\S]*\n(?:servoctl )?[^>\n]*> ")
     # With a drive that has power it is Ctrl-C.
     t.type("enable --yes\n")
     t.see(r"ENERGISED[\s\S]*> ")

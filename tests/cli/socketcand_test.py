@@ -60,7 +60,7 @@ finally:
 
 # A server that hangs, its connection not closed: what is under way ends with an error that says so, and the next line works.
 code = "import sys, time; sys.path.insert(0, sys.argv[1]); from socketcand_server import Server; print(Server().port, flush=True); time.sleep(600)"
-for words in (["backup", "hung.json"], ["watch", "0x6041", "--for", "20s"], ["monitor", "--for", "20s"]):
+for words in (["backup", "hung.json"], ["watch", "0x6041", "--for", "6s"], ["monitor", "--for", "6s"]):
     hanging = subprocess.Popen([sys.executable, "-c", code, os.path.dirname(os.path.abspath(__file__))], stdout=subprocess.PIPE, text=True)
     far = f"socketcand://127.0.0.1:{hanging.stdout.readline().strip()}/vcan0"
     drive = subprocess.Popen([servoctl, "sim", "gsd600@1?delay=5ms", "-b", far], env=env, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
@@ -72,7 +72,9 @@ for words in (["backup", "hung.json"], ["watch", "0x6041", "--for", "20s"], ["mo
         check(f"{words} is under way", line.poll() is None)
         hanging.send_signal(signal.SIGSTOP)
         begun = time.monotonic()
-        said = line.communicate(timeout=60)[1]
+        out, said = line.communicate(timeout=60)
+        # Whoever listens waits for it until its own end.
+        check(f"{words} waits\n{out}{said}", words[0] == "backup" or "waiting for it to come back" in out + said)
         # Whoever asks is without an answer before the server is known to be silent.
         what = "no answer within" if words[0] == "backup" else "does not answer any more"
         check(f"a server that hangs ends {words} with an error\n{said}", line.returncode == (4 if words[0] == "backup" else 3)
