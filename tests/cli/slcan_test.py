@@ -353,7 +353,7 @@ for what, text in (("starts anew", "has started anew"), ("hangs", "does not answ
         took = time.monotonic() - begin
         # One that starts anew is opened again, and the monitor goes on.
         check(f"an adapter that {what} is told, after {took:.1f} s\n{out}{err}",
-              monitor.returncode == (3 if what == "hangs" else 0) and text in out + err and took < 8)
+              monitor.returncode == (3 if what == "hangs" else 0) and text in out + err and took < 14)
 
 # What it says of itself is in the picture of the doctor.
 with World(flags="F21") as world:
