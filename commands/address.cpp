@@ -79,7 +79,7 @@ Result<void> check_words(const Context& context, const Arguments& arguments) {
   if (arguments.has("--resume")) return fail(Errc::usage, "--resume resumes a plan", "add --plan FILE.csv");
   if (!arguments.has("new") && !arguments.has("--bitrate"))
     return fail(Errc::usage, "there is nothing to change",
-                "`address 5 -n 1`, or --bitrate 500k, or --plan FILE");
+                "`address 5`, or --bitrate 500k, or --plan FILE");
   if (context.nodes.empty())
     return fail(Errc::usage, "'address' needs a node", "add -n 1; `scan` shows who is there");
   if (arguments.has("new") && (context.nodes.size() != 1 || context.nodes.front() == 0))

@@ -38,7 +38,7 @@ Error unknown_in_group(const std::string& said, std::span<const std::string> pat
   for (const auto& path : paths) quoted.push_back(fmt::format("`{}`", path));
   if (hint.empty() || selects_by_itself(said)) hint = fmt::format("use {}", one_of(quoted));
   if (selects_by_itself(said))
-    hint = "each `lss` command selects its slave by itself, and lets it go in the end; " + hint;
+    hint = "each LSS command selects its slave by itself, and lets it go in the end; " + hint;
   return make_error(Errc::usage, fmt::format("'{}' is not a command", said), std::move(hint));
 }
 
