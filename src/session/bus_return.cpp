@@ -13,8 +13,6 @@ namespace {
 constexpr Duration kTry = std::chrono::milliseconds(100);
 /// A try that ends sooner than this says that there is nothing to wait for.
 constexpr Duration kNoTry = std::chrono::milliseconds(5);
-/// A bus that is back so soon was perhaps never away: its queue stays full, or it fails otherwise.
-constexpr Duration kFlicker = std::chrono::milliseconds(10);
 /// Lost again so soon behind that, it is not waited for any more.
 constexpr Duration kAgain = std::chrono::seconds(3);
 
@@ -49,11 +47,16 @@ Result<void> BusReturn::reopen(TimePoint end) {
 Result<void> BusReturn::wait(const Error& lost, TimePoint end) {
   const auto since = session_->now();
   if (since < flickered_ + kAgain || sends_regularly() || !session_->energised().empty()) return fail(lost);
+  // One that can be opened at once was perhaps never away: its queue is full, or it fails otherwise.
+  if (session_->network().recover(since)) {
+    session_->note_away();
+    flickered_ = session_->now();
+    return {};
+  }
   tell_(false, fmt::format("{}: waiting for it to come back", lost.message));
   if (!reopen(end)) return fail(lost);
   session_->note_away();
   const auto time = session_->now();
-  if (time - since < kFlicker) flickered_ = time;
   const auto seconds = std::chrono::duration<double>(time - since).count();
   tell_(true, fmt::format("{} is back after {} s", session_->url(), plain_number(seconds, 2)));
   return {};

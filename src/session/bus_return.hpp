@@ -35,7 +35,7 @@ class BusReturn {
 
   Session* session_;
   Tell tell_;
-  TimePoint flickered_ = TimePoint::min();  ///< When it was back at once, as one that was never away.
+  TimePoint flickered_ = TimePoint::min();  ///< When it could be opened at once, as one that was never away.
 };
 
 }  // namespace servoctl::session

@@ -159,6 +159,7 @@ TEST_F(MotionTrouble, SignalsAreHeldBackUntilTheDriveIsAtRest) {
   ASSERT_TRUE(bench.jog(jog_for("60rpm", 200ms)).outcome);
   bench.session->options().protection = nullptr;
   const std::vector<std::pair<session::Care, bool>> expected{{session::Care::guarded, false},
+                                                             {session::Care::unsettled, false},
                                                              {session::Care::none, false}};
   EXPECT_EQ(told, expected);
 }
