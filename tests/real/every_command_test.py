@@ -176,7 +176,9 @@ def during(line, tries=3):
         set_link("up")
         time.sleep(0.2)
         return during(line, tries - 1)
-    hold(f"down in `{line}`", process.returncode, out, time.monotonic() - begun, 12 if path_of(line) in WAIT else 4)
+    # Who listens waits for the bus until its own end.
+    most = 12 if path_of(line) in WAIT else 7 if "--for 5s" in line else 4
+    hold(f"down in `{line}`", process.returncode, out, time.monotonic() - begun, most)
     set_link("up")
     time.sleep(0.1)
 
