@@ -116,7 +116,8 @@ class Monitor {
         {"load", percent(load_.mean(now)), report::Show::everywhere, "bus load (%)"},
         {"peak_load", percent(load_.peak()), report::Show::everywhere, "peak in 100 ms (%)"},
         {"heartbeats_lost", lost_, report::Show::everywhere, "heartbeats lost"},
-        {"wire_errors", report::text_or_null(errors_.text()), report::Show::everywhere, "errors on the wire"},
+        {"wire_errors", wire_errors(), report::Show::json},
+        {"wire_errors_text", report::text_or_null(errors_.text()), report::Show::text, "errors on the wire"},
         {"services", std::move(services)}};
   }
 
@@ -132,6 +133,16 @@ class Monitor {
           fmt::format("ALARM {}", show::event_text(event, context_->profile, context_->chinese));
       log_->remark(event.time - begin_, "alarm", event.node, text, doubled ? "doubled" : "heartbeat-lost");
     }
+  }
+
+  report::List wire_errors() const {
+    report::List out;
+    for (std::size_t i = 0; i < can::kWireErrors; ++i) {
+      const auto error = static_cast<can::WireError>(i);
+      if (errors_.count(error) > 0)
+        out.emplace_back(report::Record{{"error", can::text(error)}, {"count", errors_.count(error)}});
+    }
+    return out;
   }
 
   /// It is a part of what happened on the bus.
@@ -167,7 +178,7 @@ Result<Value> run_monitor(Context& context, const Arguments& arguments) {
   Monitor monitor(context, log, *bitrate, view.get());
   const auto ended = monitor.run(*length);
   view.reset();
-  if (!ended) return fail(ended.error());
+  if (!traffic::has_summary(ended, context.errors)) return fail(ended.error());
   auto summary = monitor.summary();
   summary.push_back(
       {"samples", context.keeps_samples ? Value(log.take_kept()) : Value(), report::Show::json});

@@ -179,7 +179,8 @@ Result<Value> run_pdo_watch(Context& context, const Arguments& arguments) {
     return fail(Errc::negative, "none of the PDOs is in use",
                 "`pdo show` lists them; `pdo enable` enables one");
   show::SampleWriter writer(context);
-  if (const auto ended = listen(context, writer, *watched, *length); !ended) return fail(ended.error());
+  const auto ended = listen(context, writer, *watched, *length);
+  if (!traffic::has_summary(ended, context.errors)) return fail(ended.error());
   if (context.session->ethercat() != nullptr)
     tell_ended(context, *watched);
   else

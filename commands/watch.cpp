@@ -4,6 +4,7 @@
 
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
+#include "session/identify.hpp"
 #include "show/records.hpp"
 #include "show/sample_writer.hpp"
 #include "traffic/listening.hpp"
@@ -59,6 +60,7 @@ class WatchingValues {
     return {};
   }
 
+  bool has_looked() const { return !before_.empty(); }
   bool is_over() const { return view_ && view_->is_over(); }
   void refresh() {
     if (view_) view_->refresh(context_->session->now());
@@ -167,6 +169,9 @@ Result<Value> run_watch(Context& context, const Arguments& arguments) {
   if (!every) return fail(every.error());
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
+  // Behind a bus that was lost others may be there.
+  if (context.profile != nullptr)
+    (void)session::identify(*context.session, context.nodes, context.profile->rules);
   auto sampler = traffic::Sampler::make(context, arguments.all("object"));
   if (!sampler) return fail(sampler.error());
   auto& session = *context.session;
@@ -179,6 +184,7 @@ Result<Value> run_watch(Context& context, const Arguments& arguments) {
   listener.on_pause = [&] { watching.refresh(); };
   listener.is_over = [&] { return watching.is_over(); };
   listener.on_bus = session::BusReturn::to_people(session);
+  listener.nodes = context.nodes;
   listener.on_time = [&](TimePoint now) -> Result<void> {
     const auto looked = watching.look(now - begin);
     // A drive that answers slowly is not asked for what was missed.
@@ -186,7 +192,10 @@ Result<Value> run_watch(Context& context, const Arguments& arguments) {
     return looked;
   };
   const auto ended = traffic::listen(session, *length, listener);
-  if (!ended && ended.error().code != Errc::interrupted) return fail(ended.error());
+  const bool interrupted = !ended && ended.error().code == Errc::interrupted;
+  const bool shown =
+      ended || interrupted || (watching.has_looked() && traffic::has_summary(ended, context.errors));
+  if (!shown) return fail(ended.error());
   return watching.result(arguments.has("--plot"));
 }
 

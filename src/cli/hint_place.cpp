@@ -53,6 +53,13 @@ void add(const Place& place, const ParsedLine& line, const ParsedLine& named,
   words.push_back(quoted(std::string(line.arguments.text(place.option))));
 }
 
+/// The family of the line; of a node that it does not name the reader knows which.
+void add_family(const ParsedLine& line, const ParsedLine& named, std::vector<std::string>& words) {
+  if (!is_elsewhere(line, named)) return add(kDrive, line, named, words);
+  if (line.arguments.has(kDrive.option) && !named.arguments.has(kDrive.option))
+    words.insert(words.end(), {"-d", "FAMILY"});
+}
+
 std::string placed(std::string_view command, const ParsedLine& line) {
   const auto words = split_words(command);
   if (!words || words->empty() || command.find("…") != std::string_view::npos) return std::string(command);
@@ -61,8 +68,8 @@ std::string placed(std::string_view command, const ParsedLine& line) {
   const auto needs = named->command->needs;
   const bool same = named->command == line.command;
   std::vector<std::string> more;
-  if (includes(needs, Needs::node)) add(kNode, line, *named, more);
-  if (includes(needs, Needs::dictionary) && !is_elsewhere(line, *named)) add(kDrive, line, *named, more);
+  if (includes(needs, Needs::node) || same) add(kNode, line, *named, more);
+  if (includes(needs, Needs::dictionary)) add_family(line, *named, more);
   if ((includes(needs, Needs::bus) || same) && !named->arguments.has(kBusWord)) add(kBus, line, *named, more);
   if (includes(needs, Needs::bus) || named->command->path.starts_with("cabinet"))
     add(kCabinet, line, *named, more);

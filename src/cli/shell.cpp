@@ -200,7 +200,7 @@ Result<void> Shell::prepare_nodes(Run& run) {
 
 Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
-  const bool met_loss = run.context.session != nullptr && run.context.session->met_loss();
+  const bool met_loss = run.context.session != nullptr && run.context.session->take_met_loss();
   hear_second_node(run);
   if (!result) errors.insert(errors.begin(), result.error());
   const bool is_lost = tell_lost_bus(run, met_loss);

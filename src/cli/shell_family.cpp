@@ -194,7 +194,8 @@ Result<void> Shell::find_family(Run& run, bool changes) {
   }
   if (cast.size() > 1) return several_families(cast);
   for (const auto node : *nodes)
-    if (const auto sure = family_of(run, **opened, node, changes); !sure) return fail(sure.error());
+    if (const auto sure = changes ? family_of(run, **opened, node, changes) : Result<std::string>(); !sure)
+      return fail(sure.error());
   run.settings.drive = cast.front().first;
   run.family_found = true;
   run.family_guessed = families_.at(key_of(**opened, nodes->front())).guessed;

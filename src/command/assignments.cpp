@@ -15,7 +15,7 @@ Result<std::vector<Assignment>> parse_assignments(std::span<const std::string> w
         Errc::usage, fmt::format("no value is given for '{}'", words[0]),
         fmt::format("`param set {0} VALUE` sets it; `param explain {0}` shows its range, `param get {0}` "
                     "reads it",
-                    words[0]));
+                    words[0].find(' ') == std::string::npos ? words[0] : "'" + words[0] + "'"));
   for (const auto& word : words) {
     const auto equals = word.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())

@@ -25,9 +25,40 @@ std::vector<const od::Entry*> entries_named(const od::Object& object, std::strin
   return pieces;
 }
 
+/// Whether it can be an English name: od::identifier() leaves out all else, and would find another object.
+bool is_ascii(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
+}
+
+/// What the names for Chinese readers are compared by; some of them have no Chinese in them (`RPDO1 COB-ID`).
+std::string chinese_key(std::string_view text) {
+  auto out = folded(text);
+  std::erase(out, ' ');
+  return out;
+}
+
+/// What is called so in part, or a part of what was written, as a question; empty where nothing is.
+std::string near_in_chinese(const Profile& profile, std::string_view text, bool objects) {
+  constexpr std::size_t kMost = 3;
+  const auto wanted = chinese_key(text);
+  std::vector<std::string> near;
+  const auto look_at = [&](const std::string& name) {
+    const auto key = chinese_key(name);
+    const bool is_near = !key.empty() && (key.find(wanted) != std::string::npos || wanted.starts_with(key));
+    if (is_near && near.size() < kMost && std::find(near.begin(), near.end(), name) == near.end())
+      near.push_back(name);
+  };
+  if (wanted.empty()) return {};
+  for (const auto& parameter : profile.parameters) look_at(parameter.name_zh);
+  if (objects)
+    for (const auto& object : profile.dictionary.objects())
+      for (const auto& entry : object.entries) look_at(entry.name_zh);
+  return near.empty() ? std::string() : fmt::format("did you mean {}?", one_of(near));
+}
+
 tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
   const auto known = names(profile);
-  auto hint = did_you_mean(lower(text), known);
+  auto hint = is_ascii(text) ? did_you_mean(lower(text), known) : near_in_chinese(profile, text, true);
   if (hint.empty())
     hint = "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
   return fail(Errc::usage, fmt::format("'{}' is not an object or parameter of {}", text, profile.family),
@@ -62,29 +93,47 @@ std::vector<Target> named(const Profile& profile, std::string_view text) {
   return out;
 }
 
-/// What Chinese names are compared by; empty for a text without Chinese.
-std::string chinese_key(std::string_view text) {
-  const bool chinese =
-      std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
-  auto out = chinese ? folded(text) : std::string();
-  std::erase(out, ' ');
-  return out;
+void add_once(std::vector<Target>& targets, const Profile& profile, ObjectAddress address) {
+  if (std::none_of(targets.begin(), targets.end(), [&](const Target& t) { return t.address == address; }))
+    targets.push_back(target_at(&profile, address));
 }
 
-/// Parameters and entries that are called so in Chinese, each address once.
+/// Parameters and entries that are called so for Chinese readers.
 std::vector<Target> named_in_chinese(const Profile& profile, std::string_view text) {
   const auto wanted = chinese_key(text);
   std::vector<Target> out;
   if (wanted.empty()) return out;
-  const auto add = [&](ObjectAddress address) {
-    if (std::none_of(out.begin(), out.end(), [&](const Target& each) { return each.address == address; }))
-      out.push_back(target_at(&profile, address));
-  };
   for (const auto& parameter : profile.parameters)
-    if (parameter.object && chinese_key(parameter.name_zh) == wanted) add(*parameter.object);
+    if (parameter.object && chinese_key(parameter.name_zh) == wanted)
+      add_once(out, profile, *parameter.object);
   for (const auto& object : profile.dictionary.objects())
     for (const auto& entry : object.entries)
-      if (chinese_key(entry.name_zh) == wanted) add(entry.address);
+      if (chinese_key(entry.name_zh) == wanted) add_once(out, profile, entry.address);
+  return out;
+}
+
+/// Objects by their English names, else parameters.
+std::vector<Target> named_in_english(const Profile& profile, std::string_view text) {
+  if (!is_ascii(text)) return {};
+  auto out = named(profile, text);
+  if (!out.empty()) return out;
+  const auto wanted = od::identifier(text);
+  for (const auto& parameter : profile.parameters)
+    if (parameter.object && od::identifier(parameter.name) == wanted)
+      out.push_back(target_at(&profile, *parameter.object));
+  return out;
+}
+
+/// Parameters that are called so, in English or for Chinese readers.
+std::vector<const od::Parameter*> parameters_named(const Profile& profile, std::string_view text) {
+  std::vector<const od::Parameter*> out;
+  const auto wanted = is_ascii(text) ? od::identifier(text) : std::string();
+  for (const auto& parameter : profile.parameters)
+    if (!wanted.empty() && od::identifier(parameter.name) == wanted) out.push_back(&parameter);
+  if (!out.empty()) return out;
+  const auto chinese = chinese_key(text);
+  for (const auto& parameter : profile.parameters)
+    if (!chinese.empty() && chinese_key(parameter.name_zh) == chinese) out.push_back(&parameter);
   return out;
 }
 
@@ -162,20 +211,15 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
   if (const auto* parameter = profile.parameter(text)) return parameter;
   if (const auto address = parse_object_address(text))
     if (const auto* parameter = profile.parameter(*address)) return parameter;
-  std::vector<const od::Parameter*> named;
-  const auto wanted = od::identifier(text);
-  const auto wanted_zh = chinese_key(text);
-  for (const auto& parameter : profile.parameters)
-    if (wanted_zh.empty() ? od::identifier(parameter.name) == wanted
-                          : chinese_key(parameter.name_zh) == wanted_zh)
-      named.push_back(&parameter);
+  const auto named = parameters_named(profile, text);
   if (named.size() == 1) return named.front();
   std::vector<std::string> known;
   for (const auto* parameter : named) known.push_back(parameter->id);
   if (named.size() > 1) return ambiguous(text, known);
   for (const auto& parameter : profile.parameters) known.push_back(parameter.id);
   auto hint = profile.parameters.empty() ? fmt::format("{} has no panel parameter table", profile.family)
-                                         : did_you_mean(text, known);
+              : is_ascii(text)           ? did_you_mean(text, known)
+                                         : near_in_chinese(profile, text, false);
   if (hint.empty()) hint = "`param list` shows all, `param search WORD` finds them by name";
   return fail(Errc::usage, fmt::format("'{}' is not a panel parameter of {}", text, profile.family),
               std::move(hint));
@@ -201,14 +245,8 @@ Result<Target> resolve(const Profile* profile, std::string_view text) {
     return target_at(profile, *parameter->object);
   }
   if (auto target = by_rule(*profile, text)) return *target;
-  auto found = named_in_chinese(*profile, text);
-  if (found.empty()) found = named(*profile, text);
-  if (found.empty()) {
-    const auto wanted = od::identifier(text);
-    for (const auto& parameter : profile->parameters)
-      if (parameter.object && od::identifier(parameter.name) == wanted)
-        found.push_back(target_at(profile, *parameter.object));
-  }
+  auto found = named_in_english(*profile, text);
+  if (found.empty()) found = named_in_chinese(*profile, text);
   if (found.empty()) return unknown(*profile, text);
   if (found.size() == 1) return found.front();
   std::vector<std::string> meanings;

@@ -126,12 +126,14 @@ bool is_of_bits(ObjectAddress object) {
 
 }  // namespace
 
+std::size_t hex_digits(const Meaning& meaning, std::uint64_t word) {
+  const std::size_t bytes = word > 0xFFFFU ? 4 : 2;
+  return 2 * (meaning.type_known ? od::size_of(meaning.type).value_or(bytes) : bytes);
+}
+
 std::string plain_text(const Meaning& meaning, const od::Value& value) {
-  if (const auto* word = std::get_if<std::uint64_t>(&value); word != nullptr && meaning.bits) {
-    const std::size_t bytes = *word > 0xFFFFU ? 4 : 2;
-    return fmt::format("0x{:0{}X}", *word,
-                       2 * (meaning.type_known ? od::size_of(meaning.type).value_or(bytes) : bytes));
-  }
+  if (const auto* word = std::get_if<std::uint64_t>(&value); word != nullptr && meaning.bits)
+    return fmt::format("0x{:0{}X}", *word, hex_digits(meaning, *word));
   return meaning.encoding == od::Encoding::plain ? od::to_string(value)
                                                  : plain_number(scaled(meaning, value), 12);
 }

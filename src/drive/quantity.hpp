@@ -96,6 +96,10 @@ struct Familiar {
 };
 std::optional<Familiar> familiar(const Meaning& meaning, const od::Value& value);
 
+/// How many hexadecimal digits a number has whose bits are what it says: those of its type, where it is
+/// known.
+std::size_t hex_digits(const Meaning& meaning, std::uint64_t word);
+
 /// The raw number as people read it: `400`, `-5`, `1.5` for an encoded number, `0x0270` for bits.
 std::string plain_text(const Meaning& meaning, const od::Value& value);
 

@@ -29,10 +29,8 @@ double rounded(double value, int digits = 6) {
   return parse_real(plain_number(value, digits)).value_or(value);
 }
 
-/// Three decimals for people, of less than one three digits: as the line of a running motion has them.
-double shown(double value) {
-  return std::abs(value) >= 1 ? std::round(value * 1000) / 1000 : rounded(value, 3);
-}
+/// As sentences have it.
+double shown(double value) { return parse_real(number_text(value)).value_or(value); }
 
 /// First, last, least and greatest value of one quantity; in JSON with six digits.
 Value summary_of(const std::vector<Series>& series) {

@@ -5,6 +5,7 @@
 
 #include "base/number.hpp"
 #include "session/can_network.hpp"
+#include "session/identify.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -13,6 +14,8 @@ namespace {
 constexpr Duration kTry = std::chrono::milliseconds(100);
 /// A try that ends sooner than this says that there is nothing to wait for.
 constexpr Duration kNoTry = std::chrono::milliseconds(5);
+/// A bus that is back so soon was perhaps never away: its queue stays full, or it fails otherwise.
+constexpr Duration kFlicker = std::chrono::milliseconds(10);
 /// Lost again so soon behind that, it is not waited for any more.
 constexpr Duration kAgain = std::chrono::seconds(3);
 
@@ -44,22 +47,44 @@ Result<void> BusReturn::reopen(TimePoint end) {
   }
 }
 
+std::vector<Identity> BusReturn::known() const {
+  std::vector<Identity> out;
+  for (const auto node : nodes_)
+    if (const auto* one = session_->identities().find(node, session_->watch().boots(node)))
+      out.push_back(*one);
+  return out;
+}
+
+Result<void> BusReturn::hold(std::span<const Identity> before) {
+  for (const auto& one : before) {
+    auto now = read_identity(*session_, one.node);
+    if (!now) continue;
+    // What tells the family does not ask for these.
+    if (!one.revision) now->revision.reset();
+    if (!one.serial) now->serial.reset();
+    auto change = different_number(one, *now);
+    if (change.empty() && one.device_name != now->device_name) change = "its name (1008h)";
+    if (!change.empty())
+      return fail(drive_error(
+          Errc::refused, one.node,
+          fmt::format("another drive is there than before the bus was lost: {} is another", change),
+          "`scan --long` shows who is there; then type the line anew, with the family of this drive"));
+  }
+  return {};
+}
+
 Result<void> BusReturn::wait(const Error& lost, TimePoint end) {
   const auto since = session_->now();
   if (since < flickered_ + kAgain || sends_regularly() || !session_->energised().empty()) return fail(lost);
-  // One that can be opened at once was perhaps never away: its queue is full, or it fails otherwise.
-  if (session_->network().recover(since)) {
-    session_->note_away();
-    flickered_ = session_->now();
-    return {};
-  }
-  tell_(false, fmt::format("{}: waiting for it to come back", lost.message));
+  tell_(false, fmt::format("{}: waiting until it can be used again", lost.message));
+  const auto before = known();
   if (!reopen(end)) return fail(lost);
   session_->note_away();
   const auto time = session_->now();
+  if (time - since < kFlicker) flickered_ = time;
   const auto seconds = std::chrono::duration<double>(time - since).count();
-  tell_(true, fmt::format("{} is back after {} s", session_->url(), plain_number(seconds, 2)));
-  return {};
+  tell_(true, fmt::format("{} can be used again after {} s", session_->url(), plain_number(seconds, 2)));
+  return hold(before);
 }
 
 }  // namespace servoctl::session

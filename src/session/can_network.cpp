@@ -14,6 +14,8 @@ namespace {
 
 /// So many damaged frames are no accident.
 constexpr std::size_t kNoAccident = 3;
+/// Of one who does not answer: errors that are longer ago are not the reason.
+constexpr Duration kMeanwhile = std::chrono::seconds(5);
 
 using canopen::NmtCommand;
 using canopen::NmtState;
@@ -103,7 +105,10 @@ Result<bool> CanNetwork::step(TimePoint deadline) {
     dispatch(*frame_);
     return true;
   }
-  if (const auto error = can::parse_wire_error(*frame_)) wire_errors_.add(*error);
+  if (const auto error = can::parse_wire_error(*frame_)) {
+    wire_errors_.add(*error);
+    wire_error_at_ = stepped_at_;
+  }
   if (const auto report = can::parse_report(*frame_))
     if (const auto alive = on_report(*report); !alive) return fail(alive.error());
   return true;
@@ -111,7 +116,9 @@ Result<bool> CanNetwork::step(TimePoint deadline) {
 
 Result<void> CanNetwork::recover(TimePoint deadline) {
   auto back = bus_->recover(deadline);
-  if (back) watch_.on_gap(now());
+  if (!back) return back;
+  watch_.on_gap(now());
+  pdos_.clear();  // Whoever is there now may have others.
   return back;
 }
 
@@ -156,13 +163,13 @@ std::vector<std::string> CanNetwork::take_notices() {
 }
 
 std::string CanNetwork::silence_hint(std::uint8_t node) const {
-  if (wire_errors_.damage() >= kNoAccident)
-    return fmt::format(
-        "there were errors on the wire ({}): another bitrate, wiring or termination? `doctor {}` tells them apart",
-        wire_errors_.text(), canonical_url(url_));
   const auto start = state_command(node, NodeState::pre_operational);
   if (records_.state(node) == NodeState::stopped)
     return fmt::format("node {} is stopped (NMT, by its heartbeat) and cannot answer SDO: `{}`", node, start);
+  if (wire_errors_.damage() >= kNoAccident && now() < wire_error_at_ + kMeanwhile)
+    return fmt::format(
+        "there were errors on the wire ({}): another bitrate, wiring or termination? `doctor {}` tells them apart",
+        wire_errors_.text(), canonical_url(url_));
   return fmt::format(
       "is node {} powered, connected, at this bitrate and node-ID? `scan` shows which nodes answer; a "
       "stopped node does not: `{}`",

@@ -175,6 +175,7 @@ class CanNetwork final : public Network {
   std::optional<Heartbeat> heartbeat_;
   std::optional<SyncProduction> sync_;
   can::WireErrors wire_errors_;
+  TimePoint wire_error_at_ = TimePoint::min();  ///< When the last one came.
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
   std::map<std::uint8_t, KnownPdos> pdos_;

@@ -27,4 +27,7 @@ struct Identity {
       looked;  ///< Objects of families that were looked for: whether they are there.
 };
 
+/// In which number two differ, in words (`its serial number (1018h:04)`); empty: in none.
+std::string different_number(const Identity& before, const Identity& now);
+
 }  // namespace servoctl::session

@@ -134,8 +134,9 @@ class Session {
   /// another now, and nothing that was learned of the nodes holds for the next line.
   void note_away() { was_away_ = true; }
   bool was_away() const { return was_away_; }
-  /// Whether a transfer or a wait ended with the loss of the bus, so that something may be missing.
-  bool met_loss() const { return met_loss_; }
+  /// Whether a transfer or a wait ended with the loss of the bus since this was asked last, so that something
+  /// may be missing.
+  bool take_met_loss() { return std::exchange(met_loss_, false); }
 
   /// When listen() has something to do although nothing arrives from outside.
   TimePoint next_event() const { return network_->next_event(); }

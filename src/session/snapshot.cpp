@@ -83,12 +83,17 @@ std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Prof
 std::vector<Result<Snapshot>> take_snapshots_patiently(Session& session, const drive::Profile& profile,
                                                        std::span<const std::uint8_t> nodes,
                                                        const SettingFilter& wanted) {
-  BusReturn bus(session, BusReturn::to_people(session));
+  BusReturn bus(session, BusReturn::to_people(session), nodes);
   for (;;) {
     auto out = take_snapshots(session, profile, nodes, wanted);
     const auto lost = std::find_if(out.begin(), out.end(),
                                    [](const auto& one) { return !one && one.error().code == Errc::bus; });
-    if (lost == out.end() || !bus.wait(lost->error(), session.now() + BusReturn::kPatience)) return out;
+    if (lost == out.end()) return out;
+    const auto back = bus.wait(lost->error(), session.now() + BusReturn::kPatience);
+    if (back) continue;
+    for (auto& one : out)
+      if (back.error().code == Errc::refused) one = fail(back.error());
+    return out;
   }
 }
 

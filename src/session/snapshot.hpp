@@ -35,7 +35,7 @@ std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Prof
                                              std::span<const std::uint8_t> nodes,
                                              const SettingFilter& wanted);
 /// The same, with patience for a bus that is lost meanwhile (BusReturn): once it is back all is read anew,
-/// because a drive may have restarted, or been exchanged, behind it.
+/// because a drive may have restarted. Errc::refused for all where one of them is another drive now.
 std::vector<Result<Snapshot>> take_snapshots_patiently(Session& session, const drive::Profile& profile,
                                                        std::span<const std::uint8_t> nodes,
                                                        const SettingFilter& wanted);

@@ -32,15 +32,27 @@ void PlanBitrate::add(std::size_t row, AddressChange change, AddressOutcome outc
   outcomes_.push_back(std::move(outcome));
 }
 
-void PlanBitrate::end(std::span<const AddressRow> rows,
+bool PlanBitrate::is_still_so() {
+  if (const auto again = look(changes_, follower_.bitrate); !again) {
+    desk_->errors.push_back(again.error());
+    return false;
+  }
+  return true;
+}
+
+bool PlanBitrate::end(std::span<const AddressRow> rows,
                       const std::function<void(std::size_t row, std::string_view)>& note) {
-  if (changes_.empty()) return;
+  if (changes_.empty()) return true;
+  // The moves took their time: somebody may have been enabled, or have come, who is not to be restarted.
+  if (follower_.follows() && !is_still_so()) return false;
+  bool all = true;
   if (follower_.follows()) {
     follow_bitrate(*desk_, follower_, changes_, outcomes_, options_->each);
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       const auto& outcome = outcomes_[i];
       if (outcome.end != AddressEnd::awaits_restart) note(rows_[i], text_of(outcome.end));
       if (outcome.error) desk_->errors.push_back(with_row(rows[rows_[i]], *outcome.error));
+      all = all && !outcome.error;
     }
   }
   const bool is_there = follower_.link != nullptr && follower_.before.bitrate == follower_.bitrate;
@@ -49,6 +61,7 @@ void PlanBitrate::end(std::span<const AddressRow> rows,
            (outcome.end == AddressEnd::nothing_to_do && !is_there);
   });
   if (by_hand) tell_bitrate_by_hand(*desk_, follower_, changes_);
+  return all;
 }
 
 }  // namespace servoctl::settings

@@ -26,11 +26,14 @@ class PlanBitrate {
 
   /// A drive of a row has it for its next start.
   void add(std::size_t row, AddressChange change, AddressOutcome outcome);
-  /// All have: tells what became of each row.
-  void end(std::span<const AddressRow> rows,
+  /// All have: tells what became of each row. False where something failed that --resume goes on with: nobody
+  /// is moved again, and the bitrates are found written.
+  bool end(std::span<const AddressRow> rows,
            const std::function<void(std::size_t row, std::string_view)>& note);
 
  private:
+  bool is_still_so();
+
   show::Desk* desk_;
   const AddressPlanOptions* options_;
   BitrateSwitch follower_;

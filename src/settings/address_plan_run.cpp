@@ -180,8 +180,9 @@ class PlanRun {
 
   Result<void> carry_out() {
     if (const auto noted = write_address_journal(path_, journal_); !noted) return noted;
-    const bool all = move_all() && set_bitrates();
-    if (all) bitrate_.end(rows_, [this](std::size_t row, std::string_view result) { note(row, result); });
+    const bool all =
+        move_all() && set_bitrates() &&
+        bitrate_.end(rows_, [this](std::size_t row, std::string_view result) { note(row, result); });
     if (options_->moved)
       for (std::size_t i = 0; i < rows_.size(); ++i)
         if (rows_[i].node != rows_[i].to && place_of_row(rows_[i], journal_, i) == rows_[i].to)

@@ -190,8 +190,8 @@ class AddressRun {
       each.push_back(fmt::format("{} = 0x{:08X}", to_string(object), load_le(now.at(object))));
     desk_->notices.push_back(fmt::format(
         "node {}: COB-IDs that did not follow, and still are those of node {}: {}; where that is not "
-        "meant, `pdo show -n {}` shows them, and `write` puts them right",
-        change_->to, change_->node, fmt::join(each, ", "), change_->to));
+        "meant, `pdo show -n {} -d {}` shows them, and `write` puts them right",
+        change_->to, change_->node, fmt::join(each, ", "), change_->to, change_->profile->family));
   }
 
   show::Desk* desk_;

@@ -107,10 +107,11 @@ class SwitchRun {
       if (!waited && waited.error().code == Errc::interrupted) return fail(waited.error());
       if (!waited) return {};
     }
-    return fail(drive_error(Errc::negative, before_.front(),
-                            fmt::format("still answers: the drives were not switched off, and {} stays at {}",
-                                        plan_->link->name(), session::settings_text(plan_->before)),
-                            "what was written holds from their next start; the same line waits again"));
+    return fail(drive_error(
+        Errc::negative, before_.front(),
+        fmt::format("still answers: the drives were not switched off, and {} stays at {}",
+                    plan_->link->name(), session::settings_text(plan_->before)),
+        "what was written holds from their next start; the same line waits again, a plan with --resume"));
   }
 
   std::vector<std::uint32_t> boots() const {

@@ -25,7 +25,11 @@ constexpr Duration kLssBootPatience = std::chrono::seconds(5);
 class LssNodeRun {
  public:
   LssNodeRun(show::Desk& desk, const LssSlave& slave, const LssNodeChange& change)
-      : session_(desk.session), slave_(&slave), change_(&change) {}
+      : desk_(&desk),
+        session_(desk.session),
+        slave_(&slave),
+        change_(&change),
+        is_shared_(!shared_lss_node(*desk.session, slave).empty()) {}
 
   LssNodeOutcome run() {
     const bool stays = has_lss_node(*slave_, *change_);
@@ -92,13 +96,22 @@ class LssNodeRun {
     if (slave_->is_unconfigured() || !slave_->node) return true;
     const auto sent =
         session::restart_node(*session_, *slave_->node, drive::NmtRules::Restart::reset_communication);
-    return sent || fail_with("set; holds from its next start", sent.error());
+    if (!sent) return fail_with("set; holds from its next start", sent.error());
+    if (is_shared_)
+      desk_->notices.push_back(fmt::format(
+          "node {}: the other drive of this node-ID was reset as well: its unstored PDOs, COB-IDs and heartbeats are lost",
+          *slave_->node));
+    return true;
   }
 
   void find() {
     if (change_->to == kUnconfigured) return find_without();
     session::forget_node(*session_, change_->to);
-    const auto from = slave_->is_unconfigured() ? change_->to : slave_->node.value_or(change_->to);
+    // The other drive of its number starts as well, and says nothing of this one.
+    constexpr std::uint8_t kNobody = 0;
+    const auto from = is_shared_                  ? kNobody
+                      : slave_->is_unconfigured() ? change_->to
+                                                  : slave_->node.value_or(change_->to);
     const auto came =
         session::wait_for_boot(*session_, from, change_->to, session_->now() + kLssBootPatience);
     if (!came) return void(fail_with("set; not looked for", came.error()));
@@ -139,13 +152,15 @@ class LssNodeRun {
     LssDialogue lss(*session_, session_->options().timeout);
     const auto now = lss.select(slave_->address);
     if (!now && now.error().code != Errc::timeout) return void(fail_with("set; not looked for", now.error()));
-    out_.done = there->empty() && now && now->is_unconfigured();
+    out_.done = (there->empty() || is_shared_) && now && now->is_unconfigured();
     out_.result = out_.done ? "without a node-ID now" : "set; holds from its next start";
   }
 
+  show::Desk* desk_;
   session::Session* session_;
   const LssSlave* slave_;
   const LssNodeChange* change_;
+  bool is_shared_;  ///< Another drive has its node-ID too, and keeps it.
   LssNodeOutcome out_;
 };
 

@@ -189,7 +189,9 @@ class Restoring {
                          {.roll_back = options_.roll_back, .keep = options_.keep, .unlock = options_.unlock});
     end_ = end_of(outcome);
     in_flash_ = outcome.in_flash;
-    if (end_ != RestoreEnd::rolled_back) tell_power_values(*desk_, node_, target.present(), target.wanted());
+    const bool may_hold = !outcome.failure || outcome.writes > 0 || !outcome.astray.empty();
+    if (end_ != RestoreEnd::rolled_back && may_hold)
+      tell_power_values(*desk_, node_, target.present(), target.wanted());
     for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
     if (differs_)
       desk_->notices.push_back(

@@ -151,11 +151,7 @@ session::Identity lasting(const session::Identity& identity) {
 }
 
 std::string change_of(const session::Identity& before, const session::Identity& now) {
-  if (before.device_type != now.device_type) return "its device type (1000h)";
-  if (before.vendor_id != now.vendor_id) return "its vendor (1018h:01)";
-  if (before.product_code != now.product_code) return "its product code (1018h:02)";
-  if (before.revision != now.revision) return "its revision (1018h:03)";
-  if (before.serial != now.serial) return "its serial number (1018h:04)";
+  if (auto number = session::different_number(before, now); !number.empty()) return number;
   // A file holds no bytes that are no text.
   const auto as_kept = [](const session::Identity& one) { return report::to_json(Value(one.device_name)); };
   return as_kept(before) != as_kept(now) ? "its name (1008h)" : std::string();

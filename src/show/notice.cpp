@@ -45,7 +45,7 @@ struct Words {
   std::string operator()(const session::NodeEvent::Doubled& doubled) const {
     if (is_ring()) return fmt::format("two slaves answer under its address: {}", doubled.by);
     return fmt::format(
-        "two nodes answer under this node-ID: {}; switch all but one off, or `lss set-node` by serial number: "
+        "two nodes answer under this node-ID: {}; switch all but one off and give that another node-ID, or `lss set-node` by serial number: "
         "`help lss set-node`",
         doubled.by);
   }

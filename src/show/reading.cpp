@@ -143,6 +143,8 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
   auto meaning = drive::fitted(drive::meaning(reading.target, reading.node), bytes.size());
   meaning.bridge = reading.bridge;
   const auto type = type_of(reading, bytes);
+  if (!meaning.type_known) meaning.type = type;  // By its length: a COB-ID has eight digits.
+  meaning.type_known = true;
   out.type = std::string(od::name(type));
   out.encoding = report::text_or_null(std::string(od::name(meaning.encoding)));
   const auto value = od::decode(type, bytes);

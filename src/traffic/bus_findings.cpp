@@ -159,7 +159,8 @@ void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkF
     out.push_back(
         {Level::note, "foreign-frames", fmt::format("{} frames have 29-bit identifiers", picture.extended()),
          "CANopen has none: something else is on the bus too",
-         "`monitor` shows them; a device that is to be on this bus may stay as long as the load allows it"});
+         "find out which device sends them (`candump` shows them); where it is to be on this bus, the load is "
+         "all that it costs"});
 }
 
 }  // namespace

@@ -41,13 +41,19 @@ Result<void> listen_until(session::Session& session, TimePoint end, const Listen
 
 Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener) {
   const session::Stretch stretch(session, length ? session.now() + *length : kNever);
-  session::BusReturn bus(session, listener.on_bus);
+  session::BusReturn bus(session, listener.on_bus, listener.nodes);
   for (;;) {
     auto ended = listen_until(session, stretch.end(), listener);
     const bool lost = !ended && ended.error().code == Errc::bus;
     if (!lost || !listener.on_bus) return ended;
     if (auto back = bus.wait(ended.error(), stretch.end()); !back) return back;
   }
+}
+
+bool has_summary(const Result<void>& ended, std::vector<Error>& errors) {
+  if (ended) return true;
+  if (ended.error().code == Errc::bus) errors.push_back(ended.error());
+  return ended.error().code == Errc::bus;
 }
 
 }  // namespace servoctl::traffic

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "session/bus_return.hpp"
 
@@ -21,12 +23,18 @@ struct Listener {
   std::function<TimePoint()> next = {};
   /// Where it is set a lost bus is waited for (session::BusReturn), until `length` is over, and this is told.
   session::BusReturn::Tell on_bus = {};
+  /// Have to be the same drives then, where it is known who they were.
+  std::vector<std::uint8_t> nodes = {};
   /// Asked after each pause: whether it is over, as after Ctrl-C.
   std::function<bool()> is_over = {};
 };
 
 /// Listens until `length` is over or Ctrl-C comes, which is no error. Errc::bus when the bus is lost and is
-/// not waited for, or did not come back.
+/// not waited for, or did not come back; else as BusReturn::wait(). Whoever has something to show behind such
+/// an end shows it beside the error: has_summary().
 Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener);
+
+/// Whether a summary of what came before is shown all the same; an error of the bus is put beside it.
+bool has_summary(const Result<void>& ended, std::vector<Error>& errors);
 
 }  // namespace servoctl::traffic

@@ -199,15 +199,17 @@ report::Table sampling_table(std::span<const ChannelRecord> records) {
   for (const auto& record : records) {
     const auto& channel = record.channel();
     const auto& numbers = record.statistics();
-    const bool bits = drive::meaning(channel.target, channel.node).bits;
+    const auto meaning = drive::meaning(channel.target, channel.node);
     const auto number = [&](double value) {
       if (numbers.count() == 0) return Value();
-      return bits ? Value(report::Hex{static_cast<std::uint64_t>(value), 4}) : rounded(value);
+      if (!meaning.bits) return rounded(value);
+      const auto word = static_cast<std::uint64_t>(value);
+      return Value(report::Hex{word, static_cast<int>(drive::hex_digits(meaning, word))});
     };
     table.rows.push_back({channel.node, channel.target.address.index, channel.target.address.sub,
                           channel.name, numbers.count(), record.by_pdo(), record.failures(),
                           number(numbers.least()), numbers.count() == 0 ? Value() : rounded(numbers.mean()),
-                          bits ? Value() : number(numbers.mean()), number(numbers.greatest()),
+                          meaning.bits ? Value() : number(numbers.mean()), number(numbers.greatest()),
                           report::text_or_null(record.series().unit)});
   }
   return table;

@@ -151,12 +151,10 @@ finally:
     gateway.end()
 
 
-class Scripted:
-    """Answers each line by what `answer` makes of its number and its words."""
+class Listening:
+    """A place at which gateways are looked for; who derives from it serves each client."""
 
-    def __init__(self, answer, sets=lambda words: "OK\r\n"):
-        self.answer, self.sets = answer, sets
-        self.lines = []
+    def __init__(self):
         self.listener = socket.create_server(("127.0.0.1", 0))
         self.bus = f"gateway://127.0.0.1:{self.listener.getsockname()[1]}"
         threading.Thread(target=self.accept, daemon=True).start()
@@ -168,6 +166,15 @@ class Scripted:
             except OSError:
                 return
             threading.Thread(target=self.serve, args=(client,), daemon=True).start()
+
+
+class Scripted(Listening):
+    """Answers each line by what `answer` makes of its number and its words."""
+
+    def __init__(self, answer, sets=lambda words: "OK\r\n"):
+        self.answer, self.sets = answer, sets
+        self.lines = []
+        super().__init__()
 
     def serve(self, client):
         try:
@@ -218,22 +225,12 @@ scripted.listener.close()
 
 # A gateway that is killed, or whose cable is pulled, in the middle: an error at once, no file that looks whole, and at the prompt the
 # next line connects anew.
-class Relay:
+class Relay(Listening):
     """Between a client and a gateway: slow, and cut after so many lines."""
 
     def __init__(self, lines):
         self.left, self.asked = lines, 0
-        self.listener = socket.create_server(("127.0.0.1", 0))
-        self.bus = f"gateway://127.0.0.1:{self.listener.getsockname()[1]}"
-        threading.Thread(target=self.accept, daemon=True).start()
-
-    def accept(self):
-        while True:
-            try:
-                client, _ = self.listener.accept()
-            except OSError:
-                return
-            threading.Thread(target=self.serve, args=(client,), daemon=True).start()
+        super().__init__()
 
     def serve(self, client):
         server = socket.socket(socket.AF_UNIX)
@@ -307,7 +304,7 @@ try:
     begun = time.monotonic()
     said = backup.communicate(timeout=60)[1]
     check(f"a gateway that hangs is told once, after {time.monotonic() - begun:.1f} s\n{said}",
-          backup.returncode == 3 and said.count("error:") == 1 and said.count("does not answer any more: waiting for it") == 1
+          backup.returncode == 3 and said.count("error:") == 1 and said.count("does not answer any more: waiting until it can") == 1
           and said.count("does not answer any more") == 2 and time.monotonic() - begun < 26)
     check("no file is made of half a backup", not os.path.exists(os.path.join(folder, "cut.json")))
     gateway.send_signal(signal.SIGCONT)

@@ -41,14 +41,18 @@ TEST(HintPlace, QuotesWhatAShellWouldTakeApart) {
             "`scan -b 'sim:dm@1?fault=0xFF00@1s&silent=2s'`");
 }
 
-TEST(HintPlace, LeavesTheFamilyToTheNodesOfTheLine) {
+TEST(HintPlace, LeavesTheFamilyOfAnotherNodeToTheReader) {
   const std::vector<std::string> line{"heartbeat", "show", "-n", "3", "-d", "ts"};
-  EXPECT_EQ(placed("`heartbeat set 100ms -n 5`", line), "`heartbeat set 100ms -n 5`");
+  EXPECT_EQ(placed("`heartbeat set 100ms -n 5`", line), "`heartbeat set 100ms -n 5 -d FAMILY`");
   EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", line), "`heartbeat set 100ms -n 3 -d ts`");
   const std::vector<std::string> several{"heartbeat", "show", "-n", "1-4", "-d", "ts"};
   EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", several), "`heartbeat set 100ms -n 3 -d ts`");
   const std::vector<std::string> all{"heartbeat", "show", "-n", "all", "-d", "ts"};
   EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", all), "`heartbeat set 100ms -n 3 -d ts`");
+}
+
+TEST(HintPlace, GivesACommandOfTheSameKindTheNodeOfTheLine) {
+  EXPECT_EQ(placed("`address 5`", {"address", "-n", "3", "-d", "ts"}), "`address 5 -n 3 -d ts`");
 }
 
 TEST(HintPlace, IsThatOfTheFindingInWhatMendsIt) {

@@ -223,9 +223,9 @@ with World(spec="gsd600@1?delay=5ms") as world, tempfile.TemporaryDirectory() as
     time.sleep(1)
     terminal.text = ""
     unplug()
-    terminal.see(r"is gone[\s\S]*waiting for it", seconds=3)
+    terminal.see(r"is gone[\s\S]*waiting until it can", seconds=3)
     plug()
-    terminal.see(r"is back after")
+    terminal.see(r"can be used again after")
     terminal.type("\x03")
     terminal.see(r"> ")
     terminal.type("read 0x1000\n")

@@ -74,7 +74,7 @@ for words in (["backup", "hung.json"], ["watch", "0x6041", "--for", "6s"], ["mon
         begun = time.monotonic()
         out, said = line.communicate(timeout=60)
         # Whoever listens waits for it until its own end.
-        check(f"{words} waits\n{out}{said}", words[0] == "backup" or "waiting for it to come back" in out + said)
+        check(f"{words} waits\n{out}{said}", words[0] == "backup" or "waiting until it can be used again" in out + said)
         # Whoever asks is without an answer before the server is known to be silent.
         what = "no answer within" if words[0] == "backup" else "does not answer any more"
         check(f"a server that hangs ends {words} with an error\n{said}", line.returncode == (4 if words[0] == "backup" else 3)

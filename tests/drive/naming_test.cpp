@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/source_dir.hpp"
+
 namespace servoctl::drive {
 namespace {
 
@@ -123,6 +125,59 @@ TEST(Names, HoldEveryParameterAndEveryOtherEntryOnce) {
                                       "homing_speeds.highest_sub_index_supported",
                                       "homing_speeds.speed_during_search_for_switch",
                                       "homing_speeds.speed_during_search_for_zero"}));
+}
+
+/// Every family that has Chinese names.
+std::vector<Profile> families() {
+  std::vector<Profile> out;
+  for (const auto& family : find_families(kFolders))
+    out.push_back(load_profile(family.name, kFolders).value());
+  return out;
+}
+
+TEST(Resolve, TakesEveryChineseNameForItsOwnObjectOrForAmbiguous) {
+  std::size_t own = 0;
+  for (const auto& profile : families())
+    for (const auto& object : profile.dictionary.objects())
+      for (const auto& entry : object.entries) {
+        if (entry.name_zh.empty() || parse_object_address(entry.name_zh)) continue;
+        const auto target = resolve(&profile, entry.name_zh);
+        if (!target) {
+          EXPECT_NE(target.error().message.find("is ambiguous"), std::string::npos)
+              << profile.family << " " << entry.name_zh << ": " << target.error().message;
+          continue;
+        }
+        own += target->address == entry.address;
+        const auto* there = profile.dictionary.find(target->address);
+        EXPECT_TRUE(target->address == entry.address || there == nullptr || there->name_zh != entry.name_zh)
+            << profile.family << " " << entry.name_zh << " is taken for " << to_string(target->address);
+      }
+  EXPECT_GT(own, 500U);
+}
+
+TEST(Resolve, NeverTakesANameWithChineseForAnEnglishOne) {
+  const auto gsd600 = load_profile("gsd600", kFolders).value();
+  EXPECT_EQ(resolve(&gsd600, "controlword")->address, (ObjectAddress{0x6040, 0}));
+  for (const auto* text : {"速度controlword", "状态 statusword", "controlword字"}) {
+    EXPECT_FALSE(resolve(&gsd600, text)) << text;
+    EXPECT_FALSE(resolve_parameter(gsd600, text)) << text;
+  }
+}
+
+TEST(Resolve, TakesNamesForChineseReadersThatHaveNoChinese) {
+  const auto dm = load_profile("dm", kFolders).value();
+  ASSERT_TRUE(resolve(&dm, "KT")) << resolve(&dm, "KT").error().message;
+  EXPECT_EQ(dm.dictionary.find(resolve(&dm, "KT")->address)->name_zh, "KT");
+}
+
+TEST(Resolve, OffersTheNearestChineseNames) {
+  const auto gsd600 = load_profile("gsd600", kFolders).value();
+  const auto near = resolve(&gsd600, "速度环增益");
+  ASSERT_FALSE(near);
+  EXPECT_EQ(near.error().hint.find("did you mean 速度环增益 1"), 0U) << near.error().hint;
+  const auto parameter = resolve_parameter(gsd600, "速度环增益");
+  ASSERT_FALSE(parameter);
+  EXPECT_EQ(parameter.error().hint.find("did you mean 速度环增益 1"), 0U) << parameter.error().hint;
 }
 
 }  // namespace

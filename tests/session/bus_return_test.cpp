@@ -43,8 +43,8 @@ TEST_F(BusReturnTest, GoesOnWhenTheBusIsBackAndTellsBothOnce) {
   wire->lose(TimePoint(2s), TimePoint(5200ms));
   BusReturn bus(*session, BusReturn::to_people(*session));
   EXPECT_TRUE(lose_and_wait(bus, 10s));
-  EXPECT_EQ(told, (std::vector<std::string>{"can0 went down: waiting for it to come back",
-                                            "can0 is back after 3.2 s"}));
+  EXPECT_EQ(told, (std::vector<std::string>{"can0 went down: waiting until it can be used again",
+                                            "can0 can be used again after 3.2 s"}));
   EXPECT_TRUE(session->was_away());
   EXPECT_EQ(session->now(), TimePoint(5200ms));
 }
@@ -88,7 +88,34 @@ TEST_F(BusReturnTest, DoesNotTakeABusThatFailsForOneThatComesBack) {
   BusReturn bus(*session, BusReturn::to_people(*session));
   EXPECT_TRUE(lose_and_wait(bus, 10s));
   EXPECT_FALSE(lose_and_wait(bus, 10s));
-  EXPECT_EQ(told.size(), 0U);
+  EXPECT_EQ(told.size(), 2U);
+}
+
+TEST_F(BusReturnTest, IsRefusedWhereAnotherDriveIsThereNow) {
+  // Answers 1000h and 1018h:01, and refuses all else; the vendor is another one behind the loss.
+  std::string vendor = "11000000";
+  wire->on_send = [&](ScriptedBus& it, const std::string& sent) {
+    const auto object = sent.substr(6, 6);
+    if (object == "001000")
+      it.arrive("581#4300100092010200");
+    else if (object == "181001")
+      it.arrive("581#43181001" + vendor);
+    else
+      it.arrive("581#80" + object + "00000206");
+  };
+  const std::uint8_t nodes[] = {1};
+  ASSERT_TRUE(identify(*session, nodes, drive::Rules{}).front());
+  wire->lose(TimePoint(2s), TimePoint(3s));
+  wire->lose(TimePoint(8s), TimePoint(9s));
+  BusReturn bus(*session, BusReturn::to_people(*session), nodes);
+  EXPECT_TRUE(lose_and_wait(bus, 10s)) << "the same one";
+  vendor = "22000000";
+  const auto back = lose_and_wait(bus, 10s);
+  ASSERT_FALSE(back);
+  EXPECT_EQ(back.error().code, Errc::refused);
+  EXPECT_EQ(back.error().message,
+            "another drive is there than before the bus was lost: its vendor (1018h:01) is another");
+  EXPECT_EQ(back.error().node, 1);
 }
 
 TEST_F(BusReturnTest, DoesNotTakeTheTimeWithoutTheBusForASilenceOfNodes) {
@@ -107,10 +134,11 @@ TEST_F(BusReturnTest, DoesNotTakeTheTimeWithoutTheBusForASilenceOfNodes) {
 }
 
 TEST_F(BusReturnTest, WhatAWaitOrATransferMissedIsKnown) {
-  EXPECT_FALSE(session->met_loss());
+  EXPECT_FALSE(session->take_met_loss());
   wire->lose(session->now(), TimePoint(30s));
   EXPECT_FALSE(session->upload(1, {0x1000, 0}));
-  EXPECT_TRUE(session->met_loss());
+  EXPECT_TRUE(session->take_met_loss());
+  EXPECT_FALSE(session->take_met_loss()) << "what follows is another line";
 }
 
 /// What the kernel tells of the wire: a form error, as the SJA1000 driver writes it (linux/can/error.h). Its
@@ -134,6 +162,14 @@ TEST_F(BusReturnTest, ErrorsOnTheWireAreTheReasonOfASilenceAndNoMessages) {
       "apart");
   EXPECT_EQ(session->take_events().size(), 0U);
   EXPECT_EQ(session->can()->wire_errors().damage(), 4U);
+}
+
+TEST_F(BusReturnTest, ErrorsThatAreLongOverAreNotTheReasonOfASilence) {
+  for (int i = 1; i <= 4; ++i) wire->arrive(form_error(), i * 10ms);
+  (void)session->wait([] { return false; }, session->now() + 10s);
+  const auto answer = session->upload(8, {0x1000, 0});
+  ASSERT_FALSE(answer);
+  EXPECT_TRUE(answer.error().hint.starts_with("is node 8 powered")) << answer.error().hint;
 }
 
 TEST_F(BusReturnTest, OneErrorOnTheWireIsAnAccident) {

@@ -38,12 +38,21 @@ class PlanOfBitrates : public PlanOfAddresses {
     options.family_of = [profiles](const AddressRow& row) -> Result<const drive::Profile*> {
       return profiles[row.line - 2];
     };
-    options.follower = [&cell](std::span<const AddressChange> changes,
-                               std::uint32_t bitrate) -> Result<BitrateSwitch> {
-      return plan_switch(cell.world.desk, std::exchange(cell.owned, nullptr), changes, bitrate, {}, true);
+    options.follower = [this, &cell](std::span<const AddressChange> changes,
+                                     std::uint32_t bitrate) -> Result<BitrateSwitch> {
+      if (++looks_ == 2 && behind_the_moves_)
+        if (const auto so = behind_the_moves_(); !so) return fail(so.error());
+      auto link = std::make_unique<session::FakeLink>(cell.link->now);
+      cell.link = link.get();
+      return plan_switch(cell.world.desk, std::move(link), changes, bitrate, {}, true);
     };
-    return run_address_plan(cell.world.desk, text_, file_, options);
+    auto done = run_address_plan(cell.world.desk, text_, file_, options);
+    cell.link = cell.owned.get();
+    return done;
   }
+
+  int looks_ = 0;
+  std::function<Result<void>()> behind_the_moves_;  ///< Of those who are on the bus, asked a second time.
 };
 
 TEST_F(PlanOfBitrates, WritesNoneToADriveThatWasReplacedBeforeItIsResumed) {
@@ -122,6 +131,19 @@ TEST_F(PlanOfBitrates, TakesTheInterfaceAlongWithDrivesOfSeveralFamilies) {
   EXPECT_EQ(cell.world.count("000#8100"), 1U);
   EXPECT_EQ(cell.world.notices(), "");
   EXPECT_FALSE(has_journal());
+}
+
+TEST_F(PlanOfBitrates, RestartsNobodyWhereSomebodyWasEnabledMeanwhile) {
+  BitrateCell cell("gsd600", {3});
+  text_ = "node,new,bitrate\n3,3,125k\n";
+  behind_the_moves_ = [] { return fail(Errc::refused, "node 3 is energised"); };
+  ASSERT_TRUE(run_in(cell, {&cell.world.profile}));
+  EXPECT_EQ(looks_, 2);
+  ASSERT_FALSE(cell.world.desk.errors.empty());
+  EXPECT_EQ(cell.world.desk.errors.front().message, "node 3 is energised");
+  EXPECT_EQ(cell.world.count("000#8100"), 0U);
+  EXPECT_TRUE(has_journal()) << "--resume goes on with the switch alone";
+  EXPECT_NE(cell.world.notices().find("--resume continues"), std::string::npos) << cell.world.notices();
 }
 
 TEST_F(PlanOfBitrates, LeavesTheInterfaceWhereSomebodyHasNoRow) {

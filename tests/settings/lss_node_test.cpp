@@ -148,6 +148,19 @@ TEST_F(LssNode, IsGivenToOneOfTwoDrivesThatHaveNoPower) {
   EXPECT_EQ(outcome.result, "moved") << (outcome.error ? outcome.error->message : "");
   EXPECT_EQ(cell.drives[0]->node(), 5);
   EXPECT_EQ(namesake.node(), 1);
+  ASSERT_EQ(desk.notices.size(), 1U) << "it is told, where nobody was asked, too";
+  EXPECT_TRUE(desk.notices.front().starts_with("node 1: the other drive of this node-ID was reset as well"));
+}
+
+TEST_F(LssNode, IsTakenFromOneOfTwoDrives) {
+  build("sv2@1?lss");
+  (void)add_namesake("gsd600@1");
+  const LssNodeChange change{address(*cell.drives[0]), canopen::kUnconfigured, false};
+  const auto slave = look_at_lss_slave(desk, change);
+  ASSERT_TRUE(slave) << slave.error().message;
+  const auto outcome = give_lss_node(desk, *slave, change);
+  EXPECT_EQ(outcome.result, "without a node-ID now") << "the other one keeps its own";
+  EXPECT_TRUE(outcome.done);
 }
 
 TEST_F(LssNode, ThatItHasAlreadyIsNothingToDo) {

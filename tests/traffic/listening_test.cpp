@@ -46,8 +46,8 @@ TEST_F(ListeningTest, GoesOnBehindABusThatCameBackUntilItsOwnEnd) {
   };
   ASSERT_TRUE(listen(*line, 10s, listener));
   EXPECT_EQ(heard, (std::vector<std::uint32_t>{0x181, 0x183}));
-  EXPECT_EQ(told, (std::vector<std::string>{"lost: can0 went down: waiting for it to come back",
-                                            "back: can0 is back after 2 s"}));
+  EXPECT_EQ(told, (std::vector<std::string>{"lost: can0 went down: waiting until it can be used again",
+                                            "back: can0 can be used again after 2 s"}));
   EXPECT_EQ(line->now(), TimePoint(11s));
 }
 
@@ -56,6 +56,17 @@ TEST_F(ListeningTest, EndsWithTheBusThatIsNotBackAtItsEnd) {
   const auto ended = listen(*line, 2s, listener);
   ASSERT_FALSE(ended);
   EXPECT_EQ(line->now(), TimePoint(3s));
+}
+
+TEST_F(ListeningTest, ALostBusLeavesTheSummaryOfWhatCameBefore) {
+  std::vector<Error> errors;
+  EXPECT_TRUE(has_summary({}, errors));
+  EXPECT_TRUE(errors.empty());
+  EXPECT_TRUE(has_summary(fail(Errc::bus, "can0 went down"), errors));
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors.front().message, "can0 went down");
+  EXPECT_FALSE(has_summary(fail(Errc::refused, "another drive is there"), errors));
+  EXPECT_EQ(errors.size(), 1U) << "it is the error of the line itself";
 }
 
 TEST_F(ListeningTest, WhatIsDueGoesOnToo) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdlib>
 
+#include "base/lines.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::cli {
@@ -99,19 +100,12 @@ bool has_colours(Colour wanted, int descriptor) {
 }
 
 std::string coloured(std::string_view text) {
-  std::string out;
   bool heads = true;
-  while (!text.empty()) {
-    const auto end = std::min(text.find('\n'), text.size());
-    const auto one = text.substr(0, end);
-    out += line(one, heads);
+  return change_lines(text, [&](std::string_view one) {
+    auto out = line(one, heads);
     heads = one.empty() || one.ends_with(':') || one.ends_with("：");
-    text.remove_prefix(end);
-    if (text.empty()) break;
-    out += '\n';
-    text.remove_prefix(1);
-  }
-  return out;
+    return out;
+  });
 }
 
 }  // namespace servoctl::cli

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "base/lines.hpp"
 #include "base/printable.hpp"
 #include "base/signal_wait.hpp"
 #include "base/text.hpp"
@@ -33,21 +34,13 @@ constexpr std::string_view kLeads[] = {"error: ", "  hint: ", "notice: ", "warni
 
 /// The lines that begin so in Chinese; others are what somebody laid out, or asked, in Chinese already.
 std::string remarks_in_chinese(std::string_view text) {
-  std::string out;
-  while (!text.empty()) {
-    const auto end = text.find('\n');
-    const auto line = text.substr(0, end);
+  return change_lines(text, [](std::string_view line) {
     const auto* lead = std::find_if(std::begin(kLeads), std::end(kLeads),
                                     [&](const auto& one) { return line.starts_with(one); });
-    if (lead == std::end(kLeads))
-      out += line;
-    else
-      (out += report::chinese_word(*lead)) += report::in_chinese(line.substr(lead->size()));
-    if (end == std::string_view::npos) break;
-    out += '\n';
-    text.remove_prefix(end + 1);
-  }
-  return out;
+    return lead == std::end(kLeads)
+               ? std::string(line)
+               : std::string(report::chinese_word(*lead)) + report::in_chinese(line.substr(lead->size()));
+  });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/lines.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::cli {
@@ -31,16 +32,7 @@ std::string fitted_line(std::string_view line, std::size_t width) {
 
 std::string fitted(std::string_view text, std::size_t width) {
   if (width == 0) return std::string(text);
-  std::string out;
-  while (!text.empty()) {
-    const auto end = std::min(text.find('\n'), text.size());
-    out += fitted_line(text.substr(0, end), width);
-    text.remove_prefix(end);
-    if (text.empty()) break;
-    out += '\n';
-    text.remove_prefix(1);
-  }
-  return out;
+  return change_lines(text, [&](std::string_view line) { return fitted_line(line, width); });
 }
 
 }  // namespace servoctl::cli
