@@ -115,8 +115,9 @@ class Log {
     }
   }
 
-  /// Errors of nodes that were lost, never heard, or tell nothing regularly go to the context.
-  Value summary() {
+  /// Errors of nodes that were lost, never heard, or tell nothing regularly go to the context. `bus_lost`:
+  /// the bus is, and of no node is known how it is.
+  Value summary(bool bus_lost) {
     report::Table table;
     table.columns = {{"node"},
                      {"alive"},
@@ -130,10 +131,11 @@ class Log {
       const auto state = watch.state(row.node);
       const auto period =
           std::chrono::duration_cast<std::chrono::milliseconds>(watch.period(row.node)).count();
-      table.rows.push_back({row.node, alive(row), state ? Value(canopen::name(*state)) : Value(),
+      table.rows.push_back({row.node, bus_lost ? Value() : alive(row),
+                            state ? Value(canopen::name(*state)) : Value(),
                             period == 0 ? Value() : Value(period), watch.boots(row.node) - row.boots,
                             row.lost, row.emergencies});
-      complain(row);
+      if (!bus_lost) complain(row);
     }
     return report::Record{{"nodes", std::move(table)}, {"events", std::move(events_), Show::json}};
   }
@@ -255,7 +257,7 @@ Result<Value> run_nmt_watch(Context& context, const Arguments& arguments) {
   const auto watched = watch(session, *nodes, *plan, log);
   session.can()->stop_guarding();
   if (!traffic::has_summary(watched, context.errors)) return fail(watched.error());
-  return log.summary();
+  return log.summary(!watched);
 }
 
 constexpr Example kNmtWatchExamples[] = {

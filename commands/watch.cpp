@@ -66,9 +66,11 @@ class WatchingValues {
     if (view_) view_->refresh(context_->session->now());
   }
 
-  Value result(bool plot) {
+  /// `lost`: the bus is, so that what failed last says nothing of the drives.
+  Value result(bool plot, bool lost) {
     view_.reset();
-    for (auto& error : traffic::failures_of(before_)) context_->errors.push_back(std::move(error));
+    if (!lost)
+      for (auto& error : traffic::failures_of(before_)) context_->errors.push_back(std::move(error));
     report::Record out{{"objects", traffic::sampling_table(records_)}};
     if (plot) out.push_back({"plot", report::Plot{traffic::series_of(records_)}, report::Show::text});
     out.push_back(
@@ -192,11 +194,10 @@ Result<Value> run_watch(Context& context, const Arguments& arguments) {
     return looked;
   };
   const auto ended = traffic::listen(session, *length, listener);
-  const bool interrupted = !ended && ended.error().code == Errc::interrupted;
-  const bool shown =
-      ended || interrupted || (watching.has_looked() && traffic::has_summary(ended, context.errors));
+  const bool whole = ended || ended.error().code == Errc::interrupted;
+  const bool shown = whole || (watching.has_looked() && traffic::has_summary(ended, context.errors));
   if (!shown) return fail(ended.error());
-  return watching.result(arguments.has("--plot"));
+  return watching.result(arguments.has("--plot"), !whole);
 }
 
 constexpr Example kWatchExamples[] = {

@@ -2,6 +2,7 @@
 # The bus is lost in the middle of each kind of line: told at once and once, the line ends with an error, the next one works.
 # Runs inside with-vcan.sh, with can0 and can1 on one bus, errors by /dev/can0.inject. usage: trouble_test.sh SERVOCTL
 set -u
+shopt -s nullglob  # On a slow machine no backup is whole yet.
 servoctl=$1
 work=$(mktemp -d)
 sim=

@@ -114,7 +114,7 @@ TEST_F(BusReturnTest, IsRefusedWhereAnotherDriveIsThereNow) {
   ASSERT_FALSE(back);
   EXPECT_EQ(back.error().code, Errc::refused);
   EXPECT_EQ(back.error().message,
-            "another drive is there than before the bus was lost: its vendor (1018h:01) is another");
+            "node 1: another drive is there than before the bus was lost: its vendor (1018h:01) is another");
   EXPECT_EQ(back.error().node, 1);
 }
 

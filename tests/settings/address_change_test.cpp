@@ -238,7 +238,7 @@ TEST(AddressChange, COBIDsThatAreStoredWithTheOldNodeAreNamed) {
   EXPECT_EQ(outcome.end, AddressEnd::moved);
   EXPECT_FALSE(outcome.stayed.empty());
   EXPECT_NE(world.notices().find("0x1400:1 = 0x00000203"), std::string::npos) << world.notices();
-  EXPECT_NE(world.notices().find("`pdo show -n 5`"), std::string::npos) << "where it is now";
+  EXPECT_NE(world.notices().find("`pdo show -n 5 -d dm`"), std::string::npos) << "where it is now";
 }
 
 TEST(AddressChange, COBIDsThatFollowAreNotNamed) {
