@@ -14,8 +14,6 @@ namespace {
 constexpr Duration kTry = std::chrono::milliseconds(100);
 /// A try that ends sooner than this says that there is nothing to wait for.
 constexpr Duration kNoTry = std::chrono::milliseconds(5);
-/// A bus that is back so soon was perhaps never away: its queue stays full, or it fails otherwise.
-constexpr Duration kFlicker = std::chrono::milliseconds(10);
 /// Lost again so soon behind that, it is not waited for any more.
 constexpr Duration kAgain = std::chrono::seconds(3);
 
@@ -58,6 +56,7 @@ std::vector<Identity> BusReturn::known() const {
 Result<void> BusReturn::hold(std::span<const Identity> before) {
   for (const auto& one : before) {
     auto now = read_identity(*session_, one.node);
+    if (!now && now.error().code == Errc::bus) return fail(now.error());
     if (!now) continue;
     // What tells the family does not ask for these.
     if (!one.revision) now->revision.reset();
@@ -78,13 +77,19 @@ Result<void> BusReturn::wait(const Error& lost, TimePoint end) {
   if (since < flickered_ + kAgain || sends_regularly() || !session_->energised().empty()) return fail(lost);
   tell_(false, fmt::format("{}: waiting until it can be used again", lost.message));
   const auto before = known();
-  if (!reopen(end)) return fail(lost);
+  // One that can be opened at once was perhaps never away: its queue is full, or it fails otherwise.
+  const bool at_once = session_->network().recover(since).has_value();
+  if (!at_once && !reopen(end)) return fail(lost);
   session_->note_away();
-  const auto time = session_->now();
-  if (time - since < kFlicker) flickered_ = time;
-  const auto seconds = std::chrono::duration<double>(time - since).count();
-  tell_(true, fmt::format("{} can be used again after {} s", session_->url(), plain_number(seconds, 2)));
-  return hold(before);
+  const auto seconds = std::chrono::duration<double>(session_->now() - since).count();
+  tell_(true,
+        at_once ? fmt::format("{} was opened anew at once", session_->url())
+                : fmt::format("{} can be used again after {} s", session_->url(), plain_number(seconds, 2)));
+  const auto held = hold(before);
+  if (at_once) flickered_ = session_->now();
+  // Lost again: whoever reads next meets it.
+  if (!held && held.error().code == Errc::bus && !at_once) return {};
+  return held;
 }
 
 }  // namespace servoctl::session

@@ -81,7 +81,7 @@ outlasts() {
   local most=1 went back
   if [ "$how" = bus-off ]; then most=2; fi
   went=$(cat "$work/out" "$work/err" | grep -c 'waiting until it can be used again')
-  back=$(cat "$work/out" "$work/err" | grep -c 'can0 can be used again after')
+  back=$(cat "$work/out" "$work/err" | grep -cE 'can0 (can be used again after|was opened anew)')
   { [ "$went" -ge 1 ] && [ "$went" -le "$most" ] && [ "$back" -eq "$went" ]; } || fail "$how in $1: told $went times that it went, $back times that it is back"
   [ "$(grep -c '^error' "$work/err")" -eq 0 ] || fail "$how in $1: an error"
   [ "$(wc -l <"$work/out")" -gt "$seen" ] || fail "$how in $1: nothing came behind it"
@@ -119,7 +119,7 @@ for how in down bus-off; do
   sleep 1; trouble "$how"; sleep 0.5; mend "$how"
   wait "$line"; code=$?
   [ "$code" -eq 0 ] || fail "$how in backup, which came back: exit code $code"
-  grep -q 'can0 can be used again after' "$work/err" || grep -q 'when what this line does was done' "$work/err" || fail "$how in backup: the loss is not told"
+  grep -qE 'can0 (can be used again after|was opened anew)' "$work/err" || grep -q 'when what this line does was done' "$work/err" || fail "$how in backup: the loss is not told"
   for file in "$work"/cut*.json; do drive verify "$file" >"$work/out" 2>"$work/err" || fail "$how: a backup that went on is not whole"; done
 done
 

@@ -88,6 +88,24 @@ TEST_F(BusReturnTest, DoesNotTakeABusThatFailsForOneThatComesBack) {
   BusReturn bus(*session, BusReturn::to_people(*session));
   EXPECT_TRUE(lose_and_wait(bus, 10s));
   EXPECT_FALSE(lose_and_wait(bus, 10s));
+  EXPECT_EQ(told, (std::vector<std::string>{"can0 went down: waiting until it can be used again",
+                                            "can0 was opened anew at once"}));
+}
+
+TEST_F(BusReturnTest, EndsWhereABusThatWasOpenedAnewIsNoBetterForWhoeverIsAsked) {
+  // A queue that stays full: it can be opened at any time, and each request fails after its time.
+  wire->on_send = [](ScriptedBus& it, const std::string& sent) {
+    const auto object = sent.substr(6, 6);
+    it.arrive(object == "001000" ? "581#4300100092010200" : "581#80" + object + "00000206");
+  };
+  const std::uint8_t nodes[] = {1};
+  ASSERT_TRUE(identify(*session, nodes, drive::Rules{}).front());
+  for (int i = 0; i < 20; ++i) wire->lose(TimePoint(2s), TimePoint(2s));
+  wire->failing = 4s;
+  BusReturn bus(*session, BusReturn::to_people(*session), nodes);
+  EXPECT_FALSE(lose_and_wait(bus, 10s));
+  EXPECT_EQ(session->now(), TimePoint(6s)) << "asked once";
+  EXPECT_FALSE(lose_and_wait(bus, 10s));
   EXPECT_EQ(told.size(), 2U);
 }
 

@@ -19,6 +19,7 @@ class ScriptedBus final : public can::Bus {
   /// Called for each frame sent; answers with arrive().
   std::function<void(ScriptedBus&, const std::string& sent)> on_send;
   std::vector<std::string> sent;
+  Duration failing{};  ///< What is sent while the bus is lost fails after this time, as where a queue is full.
 
   /// The frame is received after `delay`.
   void arrive(std::string_view frame, Duration delay = std::chrono::milliseconds(1)) {
@@ -36,7 +37,10 @@ class ScriptedBus final : public can::Bus {
 
   TimePoint now() const override { return now_; }
   Result<void> send(const can::Frame& frame) override {
-    if (is_lost()) return gone();
+    if (is_lost()) {
+      now_ += failing;
+      return gone();
+    }
     sent.push_back(can::to_string(frame));
     if (on_send) on_send(*this, sent.back());
     return {};
