@@ -46,13 +46,20 @@ Result<Value> write(Context& context, const Arguments& arguments, std::span<cons
   return settings::write_changes(context, changes, options);
 }
 
-Result<void> check_set(Context&, const Arguments& arguments) {
-  const auto time = settings::parse_heartbeat_time(arguments.text("time"));
+Result<Duration> time_to_set(const Context& context, const Arguments& arguments) {
+  if (context.profile == nullptr && arguments.has("--keep"))
+    return fail(Errc::usage, "--keep needs the drive family: each keeps its values in its own way",
+                "a line for each family, with -d and --keep; `scan` tells which drive is what");
+  return settings::parse_heartbeat_time(arguments.text("time"));
+}
+
+Result<void> check_set(Context& context, const Arguments& arguments) {
+  const auto time = time_to_set(context, arguments);
   return time ? Result<void>() : fail(time.error());
 }
 
 Result<Value> run_set(Context& context, const Arguments& arguments) {
-  const auto time = settings::parse_heartbeat_time(arguments.text("time"));
+  const auto time = time_to_set(context, arguments);
   if (!time) return fail(time.error());
   std::vector<settings::Change> changes;
   for (const auto node : context.nodes) {
@@ -165,8 +172,8 @@ Result<Value> run_show(Context& context, const Arguments&) {
 
 constexpr Example kHeartbeatSetExamples[] = {
     {"heartbeat set 100ms -n 1 -d gsd600", "send one every 100 ms"},
-    {"heartbeat set 500ms --keep -n all -d gsd600", "all drives, kept over power-off"},
-    {"heartbeat set off -n 1 -d gsd600", "send none"},
+    {"heartbeat set 100ms -n all", "all drives, of whatever family"},
+    {"heartbeat set 500ms --keep -n 1,2 -d gsd600", "kept over power-off"},
 };
 constexpr Example kHeartbeatConsumeExamples[] = {
     {"heartbeat consume 10=500ms --keep -n 1 -d ts",
@@ -184,11 +191,12 @@ const Command kHeartbeatSet{
     .path = "heartbeat set",
     .summary = "Let drives send a heartbeat (1017h)",
     .details =
-        "Writes the producer heartbeat time and reads it back; `off` ends it. --keep makes it survive "
-        "power-off. A drive that sends heartbeats answers no node guarding (CiA 301).",
+        "Writes the producer heartbeat time and reads it back; `off` ends it. It is an object of CiA 301, so it "
+        "needs no family: `-n all` reaches drives of several. --keep, which does, makes it survive power-off. A drive that "
+        "sends heartbeats answers no node guarding (CiA 301).",
     .parameters = kSetParameters,
     .examples = kHeartbeatSetExamples,
-    .needs = Needs::node | Needs::dictionary | Needs::can,
+    .needs = Needs::node | Needs::can,
     .effect = Effect::writes,
     .run = run_set,
     .check = check_set,

@@ -108,11 +108,14 @@ Result<HeartbeatWatch> parse_heartbeat_watch(std::string_view text) {
 
 Result<Change> producer_change(show::Desk& desk, std::uint8_t node, Duration time) {
   const auto object = objects::kProducerHeartbeat;
-  if (desk.profile->dictionary.find(object) == nullptr)
+  const bool is_known = desk.profile != nullptr;
+  if (is_known && desk.profile->dictionary.find(object) == nullptr)
     return fail(Errc::usage, fmt::format("a {} has no 1017h: it sends no heartbeat", desk.profile->family),
                 "node guarding asks it instead: `nmt watch --guard 200ms`");
   const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(time).count();
-  return make_change(desk, node, drive::target_at(desk.profile, object), std::to_string(count), {});
+  // Without a family the object is as CiA 301 has it.
+  const auto type = is_known ? std::nullopt : std::optional(od::DataType::u16);
+  return make_change(desk, node, drive::target_at(desk.profile, object), std::to_string(count), type);
 }
 
 Result<std::vector<Change>> consumer_changes(show::Desk& desk, std::uint8_t node,
