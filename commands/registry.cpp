@@ -42,6 +42,7 @@ extern const Command kClone;
 extern const Command kAddress;
 extern const Command kLssScan;
 extern const Command kLssInquire;
+extern const Command kLssSelect;
 extern const Command kLssSetNode;
 extern const Command kLssSetBitrate;
 extern const Command kLssStore;
@@ -154,6 +155,7 @@ constexpr Named kNamed[] = {
     {"address", &commands::kAddress},
     {"lss scan", &commands::kLssScan},
     {"lss inquire", &commands::kLssInquire},
+    {"lss select", &commands::kLssSelect},
     {"lss set-node", &commands::kLssSetNode},
     {"lss set-bitrate", &commands::kLssSetBitrate},
     {"lss store", &commands::kLssStore},

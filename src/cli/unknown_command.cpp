@@ -23,10 +23,10 @@ std::vector<std::string> known_commands() {
 }
 
 /// Words of other tools for what every `lss` command does by itself (CiA 305: switch state).
-bool selects_by_itself(std::string_view said) {
+bool switches_by_itself(std::string_view said) {
   constexpr std::string_view kGroup = "lss ";
   if (!said.starts_with(kGroup)) return false;
-  for (const std::string_view word : {"select", "switch", "mode", "config"})
+  for (const std::string_view word : {"switch", "mode", "config"})
     if (said.substr(kGroup.size()).starts_with(word)) return true;
   return false;
 }
@@ -36,8 +36,8 @@ Error unknown_in_group(const std::string& said, std::span<const std::string> pat
   auto hint = split(said, ' ').size() > 1 ? did_you_mean(said, paths) : std::string();
   std::vector<std::string> quoted;
   for (const auto& path : paths) quoted.push_back(fmt::format("`{}`", path));
-  if (hint.empty() || selects_by_itself(said)) hint = fmt::format("use {}", one_of(quoted));
-  if (selects_by_itself(said))
+  if (hint.empty() || switches_by_itself(said)) hint = fmt::format("use {}", one_of(quoted));
+  if (switches_by_itself(said))
     hint = "each LSS command selects its slave by itself, and lets it go in the end; " + hint;
   return make_error(Errc::usage, fmt::format("'{}' is not a command", said), std::move(hint));
 }

@@ -4,7 +4,9 @@
 #include <array>
 
 #include "base/number.hpp"
+#include "session/can_network.hpp"
 #include "session/identify.hpp"
+#include "session/lss.hpp"
 
 namespace servoctl::command {
 namespace {
@@ -19,6 +21,12 @@ std::size_t numbers_given(const Arguments& arguments) {
   std::size_t out = 0;
   for (const auto name : kIdentity) out += arguments.has(name) ? 1U : 0U;
   return out;
+}
+
+/// What `lss select` chose; null where nothing is, and for lines that are run later.
+const LssAddress* selected(const Context& context) {
+  auto* can = context.session == nullptr ? nullptr : context.session->can();
+  return can != nullptr && can->lss_selection() ? &*can->lss_selection() : nullptr;
 }
 
 bool names_node(const Context& context) { return context.nodes.size() == 1 && context.nodes.front() != 0; }
@@ -68,9 +76,11 @@ Result<void> check_lss_choice(const Context& context, const Arguments& arguments
   if (ways > 1)
     return fail(Errc::usage, "the slave is named twice",
                 "--vendor to --serial, or --only, or -n: one of them");
+  if (ways == 0 && selected(context) != nullptr) return {};
   if (ways == 0 && context.nodes.empty())
     return fail(Errc::usage, "which LSS slave?",
-                "--vendor, --product, --revision and --serial; -n 3 for a node that answers; or --only");
+                "--vendor, --product, --revision and --serial; -n 3 for a node that answers; --only; or lss "
+                "select before, at the prompt");
   if (given == 0 && !arguments.has("--only") && !names_node(context))
     return fail(Errc::usage, "one LSS slave at a time", "-n 3, or its identity");
   return {};
@@ -79,6 +89,14 @@ Result<void> check_lss_choice(const Context& context, const Arguments& arguments
 Result<LssChoice> lss_choice(Context& context, const Arguments& arguments) {
   if (const auto good = check_lss_choice(context, arguments); !good) return fail(good.error());
   if (arguments.has("--only")) return LssChoice{};
+  const auto* chosen = numbers_given(arguments) == 0 && !context.nodes_typed ? selected(context) : nullptr;
+  if (chosen != nullptr) {
+    context.notices.push_back(
+        fmt::format("the LSS slave that was selected: vendor 0x{:08X}, product 0x{:08X}, "
+                    "revision 0x{:08X}, serial {}",
+                    chosen->vendor, chosen->product, chosen->revision, chosen->serial));
+    return LssChoice{*chosen};
+  }
   if (numbers_given(arguments) == 0) {
     const auto address = address_of_node(context, context.nodes.front());
     if (!address) return fail(address.error());
@@ -94,6 +112,28 @@ report::Record lss_identity_record(const LssAddress& address) {
           {"product_code", Hex{address.product, 8}, report::Show::everywhere, "product"},
           {"revision", Hex{address.revision, 8}},
           {"serial", address.serial}};
+}
+
+Result<Value> look_at_lss_slave(Context& context, const LssChoice& choice,
+                                const std::function<void(const LssAddress&)>& found) {
+  if (context.dry_run) {
+    using canopen::LssService;
+    std::vector<canopen::LssRequest> requests;
+    for (const auto what : {LssService::inquire_node, LssService::inquire_vendor, LssService::inquire_product,
+                            LssService::inquire_revision, LssService::inquire_serial})
+      requests.push_back(canopen::lss_inquire(what));
+    return lss_planned_frames(choice, requests);
+  }
+  session::LssDialogue lss(*context.session, context.session->options().timeout);
+  const auto slave = lss.select(choice.address);
+  if (!slave) return fail(slave.error());
+  if (const auto left = lss.leave(); !left) context.errors.push_back(left.error());
+  if (found) found(slave->address);
+  auto out = lss_identity_record(slave->address);
+  const bool has_node = slave->node && !slave->is_unconfigured();
+  out.push_back({"node", has_node ? Value(*slave->node) : Value()});
+  out.push_back({"configured", slave->node ? Value(has_node) : Value()});
+  return Value(std::move(out));
 }
 
 Value lss_planned_frames(const LssChoice& choice, std::span<const canopen::LssRequest> requests) {

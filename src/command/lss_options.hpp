@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -25,11 +26,18 @@ struct LssChoice {
   std::optional<canopen::LssAddress> address;
 };
 
-/// All four numbers, --only, or -n of a node that tells them by SDO (1018h). Errc::usage for none of these,
-/// for more than one, and for a part of an identity; else as Session::upload().
+/// All four numbers, --only, or -n of a node that tells them by SDO (1018h); where none of these is typed,
+/// the slave that `lss select` chose on this bus, which is told, and without one the node of the prompt.
+/// Errc::usage for none of these, for more than one, and for a part of an identity; else as
+/// Session::upload().
 Result<LssChoice> lss_choice(Context& context, const Arguments& arguments);
 /// The same without the bus, for lines that are to be run later.
 Result<void> check_lss_choice(const Context& context, const Arguments& arguments);
+
+/// Selects the slave, asks what it is, and lets it go: `vendor_id product_code revision serial node
+/// configured`. `found` is told who it is. Errors as LssDialogue::select().
+Result<report::Value> look_at_lss_slave(Context& context, const LssChoice& choice,
+                                        const std::function<void(const canopen::LssAddress&)>& found = {});
 
 /// The number of an option, 0 to 2^32-1; empty when it was not given.
 Result<std::optional<std::uint32_t>> lss_number(const Arguments& arguments, std::string_view name);

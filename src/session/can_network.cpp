@@ -118,7 +118,9 @@ Result<void> CanNetwork::recover(TimePoint deadline) {
   auto back = bus_->recover(deadline);
   if (!back) return back;
   watch_.on_gap(now());
-  pdos_.clear();  // Whoever is there now may have others.
+  // Whoever is there now may have others, or be another.
+  pdos_.clear();
+  lss_selection_.reset();
   return back;
 }
 

@@ -16,6 +16,7 @@
 #include "can/controller_report.hpp"
 #include "can/error_frame.hpp"
 #include "canopen/duplicate_watch.hpp"
+#include "canopen/lss.hpp"
 #include "canopen/node_guard.hpp"
 #include "canopen/node_watch.hpp"
 #include "canopen/pdo.hpp"
@@ -87,6 +88,9 @@ class CanNetwork final : public Network {
 
   /// What the controller told of errors on the wire since the bus was opened; drivers tell what they can.
   const can::WireErrors& wire_errors() const { return wire_errors_; }
+
+  /// The LSS slave that whoever asks of LSS means when he names none; forgotten with the bus.
+  std::optional<canopen::LssAddress>& lss_selection() { return lss_selection_; }
 
   canopen::NodeWatch& watch() { return watch_; }
   /// Whether two nodes have one number.
@@ -179,6 +183,7 @@ class CanNetwork final : public Network {
   std::vector<can::ControllerReport> reports_;
   std::optional<can::ControllerReport> last_report_;
   std::map<std::uint8_t, KnownPdos> pdos_;
+  std::optional<canopen::LssAddress> lss_selection_;
   std::vector<const OnFrame*> listeners_;
   std::array<CanObjectChannel*, 128> channels_{};  ///< The first of each node.
   std::deque<NodeEvent> events_;

@@ -60,6 +60,7 @@ LINES = {
     "address": ("address 5 --wait 3s -n 1 -d da200 -b sim:da200@1", LATEST),
     "lss scan": ("lss scan -b sim:sv2@255,da200@255,gsd600@1?lss", r"\r\x1b\[K(?!\d).{10,}\r"),
     "lss inquire": ("lss inquire --only -b sim:gsd600@1 --timeout 900ms", ELAPSED),
+    "lss select": ("lss select --only -b sim:gsd600@1 --timeout 900ms", ELAPSED),
     "lss set-node": ("lss set-node 5 --only -b sim:gsd600@1 --timeout 900ms", ELAPSED),
     "lss set-bitrate": ("lss set-bitrate 500k --only -b sim:gsd600@1 --timeout 900ms", ELAPSED),
     "lss store": ("lss store --only -b sim:gsd600@1 --timeout 900ms", ELAPSED),

@@ -28,6 +28,7 @@ const std::map<std::string, std::string, std::less<>> kRightLines{
     {"home", "home 35"},
     {"jog", "jog 60rpm"},
     {"lss inquire", "lss inquire --only"},
+    {"lss select", "lss select --only"},
     {"lss scan", "lss scan"},
     {"lss set-bitrate", "lss set-bitrate 500k --only"},
     {"lss set-node", "lss set-node 9 --only"},

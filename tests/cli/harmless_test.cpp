@@ -49,6 +49,7 @@ const std::map<std::string, std::string> kSamples{
     {"address", "address 9 -n 1 -y"},
     {"lss scan", "lss scan --assign 9 -y"},
     {"lss inquire", "lss inquire --only"},
+    {"lss select", "lss select --only"},
     {"lss set-node", "lss set-node 9 --only -y"},
     {"lss set-bitrate", "lss set-bitrate 500k --only --activate 1s -y"},
     {"lss store", "lss store --only -y"},

@@ -25,6 +25,7 @@ const std::map<std::string, std::string, std::less<>> kLines{
     {"info", "info"},
     {"jog", "jog 60rpm --turn 131072 --for 600ms"},
     {"lss inquire", "lss inquire --only"},
+    {"lss select", "lss select --only"},
     {"lss scan", "lss scan --assign 9"},
     {"lss set-bitrate", "lss set-bitrate 500k --only"},
     {"lss set-node", "lss set-node 9 --only"},

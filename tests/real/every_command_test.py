@@ -43,6 +43,7 @@ clone --from 1 --to 2 --yes
 address 5 --yes
 lss scan
 lss inquire --only
+lss select --only
 lss set-node 5 --only --yes
 lss set-bitrate 500k --only --yes
 lss store --only --yes
@@ -108,7 +109,7 @@ LEFT_OUT = {
                                         "completion")},
 }
 # Those that are over before anything can happen: they send a frame and wait for none, or for one that comes at once.
-AT_ONCE = {"nmt start", "nmt stop", "nmt preop", "nmt reset", "nmt reset-comm", "sync once", "replay", "lss scan", "lss inquire", "lss set-node",
+AT_ONCE = {"nmt start", "nmt stop", "nmt preop", "nmt reset", "nmt reset-comm", "sync once", "replay", "lss scan", "lss inquire", "lss select", "lss set-node",
            "lss set-bitrate", "lss store"}
 # Ways out, which wait for a bus that is lost.
 WAIT = {"disable", "quick-stop"}

@@ -151,6 +151,16 @@ TEST_F(BusReturnTest, DoesNotTakeTheTimeWithoutTheBusForASilenceOfNodes) {
   EXPECT_EQ(session->take_events().size(), 1U);
 }
 
+TEST_F(BusReturnTest, WhatWasKnownOfTheNodesIsForgotten) {
+  session->can()->learn_pdos(1, {});
+  session->can()->lss_selection() = canopen::LssAddress{1, 2, 3, 4};
+  wire->lose(TimePoint(2s), TimePoint(3s));
+  BusReturn bus(*session, BusReturn::to_people(*session));
+  ASSERT_TRUE(lose_and_wait(bus, 10s));
+  EXPECT_EQ(session->can()->known_pdos(1), nullptr);
+  EXPECT_FALSE(session->can()->lss_selection());
+}
+
 TEST_F(BusReturnTest, WhatAWaitOrATransferMissedIsKnown) {
   EXPECT_FALSE(session->take_met_loss());
   wire->lose(session->now(), TimePoint(30s));
