@@ -43,12 +43,13 @@ TEST(HintPlace, QuotesWhatAShellWouldTakeApart) {
 
 TEST(HintPlace, LeavesTheFamilyOfAnotherNodeToTheReader) {
   const std::vector<std::string> line{"heartbeat", "show", "-n", "3", "-d", "ts"};
-  EXPECT_EQ(placed("`heartbeat set 100ms -n 5`", line), "`heartbeat set 100ms -n 5 -d FAMILY`");
-  EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", line), "`heartbeat set 100ms -n 3 -d ts`");
+  EXPECT_EQ(placed("`watchdog -n 5`", line), "`watchdog -n 5 -d FAMILY`");
+  EXPECT_EQ(placed("`watchdog -n 3`", line), "`watchdog -n 3 -d ts`");
   const std::vector<std::string> several{"heartbeat", "show", "-n", "1-4", "-d", "ts"};
-  EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", several), "`heartbeat set 100ms -n 3 -d ts`");
+  EXPECT_EQ(placed("`watchdog -n 3`", several), "`watchdog -n 3 -d ts`");
+  EXPECT_EQ(placed("`heartbeat set 100ms -n 5`", line), "`heartbeat set 100ms -n 5`") << "needs none";
   const std::vector<std::string> all{"heartbeat", "show", "-n", "all", "-d", "ts"};
-  EXPECT_EQ(placed("`heartbeat set 100ms -n 3`", all), "`heartbeat set 100ms -n 3 -d ts`");
+  EXPECT_EQ(placed("`watchdog -n 3`", all), "`watchdog -n 3 -d ts`");
 }
 
 TEST(HintPlace, GivesACommandOfTheSameKindTheNodeOfTheLine) {

@@ -99,7 +99,7 @@ TEST_F(TabAnswers, AreWordAndMeaningForZshAndFish) {
 
 TEST_F(TabAnswers, TellTheCommandsBehindHelpAndWhatAGroupHas) {
   EXPECT_EQ(fish("ex", {"help", "param"}), "words\nexplain\tShow all that is known about a panel parameter");
-  EXPECT_EQ(fish("lss", {}), "words\nlss\tscan, inquire, set-node, set-bitrate, store");
+  EXPECT_EQ(fish("lss", {}), "words\nlss\tscan, inquire, select, set-node, set-bitrate, store");
   EXPECT_EQ(fish("un", {}).find("undo"), std::string::npos) << "a word of the prompt alone";
 }
 
