@@ -78,8 +78,7 @@ Result<void> check_words(const Context& context, const Arguments& arguments) {
   }
   if (arguments.has("--resume")) return fail(Errc::usage, "--resume resumes a plan", "add --plan FILE.csv");
   if (!arguments.has("new") && !arguments.has("--bitrate"))
-    return fail(Errc::usage, "there is nothing to change",
-                "`address 5`, or --bitrate 500k, or --plan FILE");
+    return fail(Errc::usage, "there is nothing to change", "`address 5`, or --bitrate 500k, or --plan FILE");
   if (context.nodes.empty())
     return fail(Errc::usage, "'address' needs a node", "add -n 1; `scan` shows who is there");
   if (arguments.has("new") && (context.nodes.size() != 1 || context.nodes.front() == 0))
@@ -268,7 +267,7 @@ const Command kAddress{
         "Writes the family's own parameter, reads it back, stores it by the family's way and restarts the "
         "drive (NMT), or says that it is to be switched off and on: `drives FAMILY` shows which. Then the "
         "drive is looked for at its new node-ID, and held against what it said of itself before. A node-ID "
-        "that somebody uses is refused: all that answer, are heard within 1.5 s, or answer node guarding. An energised "
+        "that somebody uses is refused: all that answer, are heard within 1.5 s, or answer node guarding, which starts life guarding where 100Ch and 100Dh are set. An energised "
         "drive is left alone. COB-IDs that did not follow the node-ID are listed. Masters, and nodes that watch the "
         "heartbeat of the drive, are not told of its new number.\n\n"
         "With --bitrate, all nodes of the bus are named (-n all) and change together: all are written first, then "

@@ -123,7 +123,7 @@ const Command kLssSetNode{
         "--serial), by -n, or by --only. A slave without a node-ID starts with the new one at once; of one "
         "that has another node-ID the communication is reset (NMT), and an energised drive is left alone, as is one "
         "whose number an energised one has. A "
-        "node-ID that somebody uses is refused: all that answer, are heard within 1.5 s, or answer node guarding. At "
+        "node-ID that somebody uses is refused: all that answer, are heard within 1.5 s, or answer node guarding, which starts life guarding where 100Ch and 100Dh are set. At "
         "the end the slave is looked for by its new node-ID and its 1018h. --keep stores it; where that "
         "fails the old node-ID is set again. 255 takes the node-ID away.",
     .parameters = kLssSetNodeParameters,
