@@ -19,7 +19,7 @@ struct Context : show::Desk {
   bool stays_open = false;                ///< Other lines follow on the same session: a prompt, a batch file.
   FrontEnd* front_end = nullptr;          ///< Null: there is none, and nothing is held.
   std::span<Context* const> others = {};  ///< The other buses and families of the line (Command::joins).
-  Context* failed = nullptr;  ///< Of `others`, the one whose bus ended the run.
+  Context* failed = nullptr;              ///< Of `others`, the one whose bus ended the run.
 
   /// As FrontEnd::hold_family().
   Result<void> hold_family(std::span<const std::uint8_t> of, const drive::Profile* family,
