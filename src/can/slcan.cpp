@@ -33,13 +33,18 @@ bool is_of_the_protocol(const Frame& frame) {
 }  // namespace
 
 tl::unexpected<Error> SlcanBus::lose(Error error) {
+  opening_.reset();
   port_.reset();  // A port that is held keeps its number: the adapter would come back under another.
   lost_ = error;
   return fail(std::move(error));
 }
 
+tl::unexpected<Error> SlcanBus::not_open() const {
+  return fail(lost_.value_or(make_error(Errc::bug, "an adapter that is not open")));
+}
+
 Result<void> SlcanBus::write(std::string_view text, TimePoint limit) {
-  if (!port_) return fail(lost_.value_or(make_error(Errc::bug, "an adapter that is not open")));
+  if (!port_) return not_open();
   if (auto sent = port_->write(text, limit); !sent) return lose(sent.error());
   return {};
 }
@@ -48,6 +53,7 @@ Result<void> SlcanBus::send(const Frame& frame) {
   if (!is_of_the_protocol(frame))
     return fail(Errc::bug,
                 fmt::format("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
+  if (!is_open()) return not_open();
   const auto line = slcan_line(frame);
   const auto limit = now() + kSlcanSendLimit;
   await_watch();
@@ -195,7 +201,7 @@ Result<std::optional<Frame>> SlcanBus::receive(TimePoint deadline) {
       arrived_ = time;
       return std::optional(frame);
     }
-    if (!port_) return fail(lost_.value_or(make_error(Errc::bug, "an adapter that is not open")));
+    if (!is_open()) return not_open();
     if (now() >= watch_.due())
       if (const auto asked = ask_again(); !asked) return fail(asked.error());
     const auto woken = wait_or_signal(port_->get(), POLLIN, std::min(deadline, watch_.due()));
@@ -228,7 +234,7 @@ std::vector<std::string> SlcanBus::take_notices() {
 
 TimePoint SlcanBus::next_event() const {
   if (!inbox_.empty()) return TimePoint::min();
-  return port_ ? watch_.due() : kNever;
+  return is_open() ? watch_.due() : kNever;
 }
 
 }  // namespace servoctl::can

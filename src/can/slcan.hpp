@@ -46,12 +46,13 @@ class SlcanBus final : public Bus {
   /// Errc::bug for a frame that is not one of ISO 11898-1.
   Result<void> send(const Frame& frame) override;
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
+  /// An opening that has not ended by then goes on with the next call.
   Result<void> recover(TimePoint deadline) override;
   Result<void> leave_for(std::uint32_t bitrate) override;
   /// Version, and whether it acknowledges and has flags.
   std::string about() const override;
   TimePoint arrived() const override { return arrived_; }
-  int poll_fd() const override { return port_ ? port_->get() : -1; }
+  int poll_fd() const override { return is_open() ? port_->get() : -1; }
   std::vector<std::string> take_notices() override;
   TimePoint next_event() const override;
 
@@ -63,7 +64,10 @@ class SlcanBus final : public Bus {
     TimePoint time;
   };
 
+  Result<void> begin();
   Result<void> hand_shake(TimePoint limit, bool ends_by_signal);
+  Result<void> talk(TimePoint limit, bool ends_by_signal);
+  bool is_open() const { return port_ && !opening_; }
   Result<void> judge(const SlcanOpening& opening) const;
   Result<void> write(std::string_view text, TimePoint limit);
   Result<void> fill();
@@ -78,11 +82,13 @@ class SlcanBus final : public Bus {
   TimePoint stamped(std::uint16_t stamp, TimePoint time);
   void close();
   tl::unexpected<Error> lose(Error error);
+  tl::unexpected<Error> not_open() const;
 
   SlcanPlace place_;
   SlcanOpening::Mode mode_;
   std::optional<SerialPort> port_;
-  std::optional<Error> lost_;  ///< Why there is no port any more.
+  std::optional<SlcanOpening> opening_;  ///< The bus is not open yet.
+  std::optional<Error> lost_;            ///< Why there is no port any more.
   SlcanReader reader_;
   ForeignClock stamps_{kStampPeriod};
   bool long_stamps_ = false;  ///< They count to 65,536 ms.

@@ -26,6 +26,7 @@ SlcanBus::~SlcanBus() { close(); }
 
 /// An adapter that stays open goes on acknowledging the frames of others, and floods its next program.
 void SlcanBus::close() {
+  opening_.reset();
   if (!port_) return;
   const auto limit = now() + kClosePatience;
   answer_ = Answer::none;
@@ -38,7 +39,8 @@ void SlcanBus::close() {
   port_.reset();
 }
 
-Result<void> SlcanBus::open(TimePoint limit, bool ends_by_signal) {
+/// The port is there, and the first word may be sent.
+Result<void> SlcanBus::begin() {
   auto port = SerialPort::open({.device = place_.device, .baud = place_.baud});
   if (!port) return fail(port.error());
   port_.emplace(std::move(*port));
@@ -49,18 +51,31 @@ Result<void> SlcanBus::open(TimePoint limit, bool ends_by_signal) {
   watch_ = SlcanWatch();
   acknowledges_frames_ = true;
   frame_was_acknowledged_ = false;
-  if (auto done = hand_shake(limit, ends_by_signal); !done) {
+  opening_.emplace(slcan_bitrate_digit(place_.bitrate).value_or('6'), mode_, now());
+  return {};
+}
+
+Result<void> SlcanBus::open(TimePoint limit, bool ends_by_signal) {
+  if (auto begun = begin(); !begun) return begun;
+  auto done = hand_shake(limit, ends_by_signal);
+  if (!done) close();
+  return done;
+}
+
+/// Errors leave the port as it is: where the opening is not done it can go on.
+Result<void> SlcanBus::hand_shake(TimePoint limit, bool ends_by_signal) {
+  if (auto done = talk(limit, ends_by_signal); !done) {
     lost_ = done.error();
-    close();
     return done;
   }
+  opening_.reset();
   lost_.reset();
   watch_ = SlcanWatch(acknowledges_, !version_.empty(), now());
   return {};
 }
 
-Result<void> SlcanBus::hand_shake(TimePoint limit, bool ends_by_signal) {
-  SlcanOpening opening(slcan_bitrate_digit(place_.bitrate).value_or('6'), mode_, now());
+Result<void> SlcanBus::talk(TimePoint limit, bool ends_by_signal) {
+  auto& opening = *opening_;
   while (!opening.is_done()) {
     if (const auto sent = write(opening.take_text(), now() + kCommandLimit); !sent) return sent;
     const auto end = std::min(opening.deadline(), limit);
@@ -69,7 +84,7 @@ Result<void> SlcanBus::hand_shake(TimePoint limit, bool ends_by_signal) {
     if (woken == Wake::interrupted && ends_by_signal) return fail(Errc::interrupted, "interrupted");
     if (woken == Wake::ready) {
       std::string bytes;
-      if (const auto got = port_->read(bytes); !got) return got;
+      if (const auto got = port_->read(bytes); !got) return lose(got.error());
       reader_.put(bytes);
       while (const auto line = reader_.take()) {
         // Behind the last acknowledge stand the first frames.
@@ -118,11 +133,20 @@ Result<void> SlcanBus::judge(const SlcanOpening& opening) const {
 }
 
 Result<void> SlcanBus::recover(TimePoint deadline) {
-  close();
+  if (!opening_) close();
   for (;;) {
-    // An adapter that starts anew, or answers late, has all rounds of the opening, as at first.
-    auto opened = open(std::max(deadline, now() + SlcanOpening::kLongest), false);
-    if (opened || opened.error().code == Errc::usage || now() >= deadline) return opened;
+    if (!opening_)
+      if (auto begun = begin(); !begun) {
+        if (now() >= deadline) return begun;
+        nap(std::min<Duration>(kPortPause, deadline - now()));
+        continue;
+      }
+    auto opened = hand_shake(deadline, false);
+    // An adapter that starts anew, or answers late, has all rounds of the opening, as at first: the next call
+    // goes on with them.
+    if (opened || (opening_ && !opening_->is_done())) return opened;
+    close();
+    if (opened.error().code == Errc::usage || now() >= deadline) return opened;
     nap(std::min<Duration>(kPortPause, deadline - now()));
   }
 }

@@ -14,6 +14,7 @@ namespace {
 using DialogueState = SocketcandDialogue::State;
 
 constexpr Duration kConnectLimit = std::chrono::seconds(3);
+constexpr Duration kReconnectLimit = std::chrono::milliseconds(500);
 constexpr Duration kServerSendLimit = std::chrono::seconds(1);
 /// Between two tries to reach a server that is gone.
 constexpr Duration kServerPause = std::chrono::milliseconds(50);
@@ -35,6 +36,7 @@ bool fits_a_frame(const Frame& frame) {
 tl::unexpected<Error> SocketcandBus::lose(Error error) {
   if (connection_) connection_->abandon();
   connection_.reset();
+  opening_ = false;
   lost_ = error;
   return fail(std::move(error));
 }
@@ -43,21 +45,26 @@ tl::unexpected<Error> SocketcandBus::not_there() const {
   return fail(lost_.value_or(make_error(Errc::bug, "a server that was not opened")));
 }
 
-Result<void> SocketcandBus::open(TimePoint limit, bool ends_by_signal) {
+/// The server has taken the connection.
+Result<void> SocketcandBus::begin(TimePoint limit, bool ends_by_signal) {
   connection_.reset();
   reader_ = SocketcandReader();
   stamps_.reset();
   inbox_.clear();
-  auto connection =
-      TcpClient::connect(server_at(place_), std::min(limit, now() + kConnectLimit), ends_by_signal);
+  auto connection = TcpClient::connect(server_at(place_), limit, ends_by_signal);
   if (!connection) {
     lost_ = connection.error();
     return fail(connection.error());
   }
   connection_.emplace(std::move(*connection));
   dialogue_.emplace(place_.interface_name, now());
+  opening_ = true;
+  return {};
+}
+
+Result<void> SocketcandBus::open(TimePoint limit, bool ends_by_signal) {
+  if (auto begun = begin(std::min(limit, now() + kConnectLimit), ends_by_signal); !begun) return begun;
   if (auto done = settle(limit, ends_by_signal); !done) return lose(done.error());
-  lost_.reset();
   return {};
 }
 
@@ -73,7 +80,10 @@ Result<void> SocketcandBus::settle(TimePoint limit, bool ends_by_signal) {
       if (const auto filled = fill(); !filled && dialogue_->state() != DialogueState::refused) return filled;
     dialogue_->on_time(now());
   }
-  return judge();
+  if (auto done = judge(); !done) return done;
+  opening_ = false;
+  lost_.reset();
+  return {};
 }
 
 Result<void> SocketcandBus::judge() const {
@@ -155,7 +165,7 @@ Result<void> SocketcandBus::send(const Frame& frame) {
                 fmt::format("the remote frame {} cannot be sent by socketcand: its protocol has none",
                             to_string(frame)),
                 "node guarding and PDOs that are asked for need another bus; heartbeat (1017h) goes without");
-  if (!connection_) return not_there();
+  if (!is_open()) return not_there();
   const auto text = socketcand_send(frame);
   const auto limit = now() + kServerSendLimit;
   if (const auto room = await_room(text.size(), limit); !room) return room;
@@ -173,7 +183,7 @@ Result<std::optional<Frame>> SocketcandBus::receive(TimePoint deadline) {
       arrived_ = time;
       return std::optional(frame);
     }
-    if (!connection_) return not_there();
+    if (!is_open()) return not_there();
     const auto woken = wait_or_signal(connection_->get(), POLLIN,
                                       std::min(deadline, std::max(now(), dialogue_->deadline())));
     if (woken == Wake::interrupted) return std::optional<Frame>();
@@ -194,10 +204,11 @@ Result<std::optional<Frame>> SocketcandBus::receive(TimePoint deadline) {
 
 Result<void> SocketcandBus::recover(TimePoint deadline) {
   for (;;) {
-    // A server that knows no echo is found out by waiting for it.
-    auto opened = open(
-        std::max(deadline, now() + SocketcandDialogue::kPatience + SocketcandDialogue::kEchoPatience), false);
-    if (opened || now() >= deadline) return opened;
+    auto opened = opening_ ? Result<void>() : begin(std::max(deadline, now() + kReconnectLimit), false);
+    if (opened) opened = settle(deadline, false);
+    if (opened || (opening_ && !dialogue_->is_settled())) return opened;
+    (void)lose(opened.error());
+    if (now() >= deadline) return opened;
     nap(std::min<Duration>(kServerPause, deadline - now()));
   }
 }
@@ -214,7 +225,7 @@ std::vector<std::string> SocketcandBus::take_notices() {
 
 TimePoint SocketcandBus::next_event() const {
   if (!inbox_.empty()) return TimePoint::min();
-  return connection_ && dialogue_ ? dialogue_->deadline() : kNever;
+  return is_open() ? dialogue_->deadline() : kNever;
 }
 
 Result<std::unique_ptr<Bus>> open_socketcand(std::string_view place) {

@@ -36,9 +36,11 @@ class SocketcandBus final : public Bus {
   /// does not have.
   Result<void> send(const Frame& frame) override;
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
+  /// The connection has half a second at least; a dialogue that has not ended by then goes on with the next
+  /// call.
   Result<void> recover(TimePoint deadline) override;
   TimePoint arrived() const override { return arrived_; }
-  int poll_fd() const override { return connection_ ? connection_->get() : -1; }
+  int poll_fd() const override { return is_open() ? connection_->get() : -1; }
   std::vector<std::string> take_notices() override;
   TimePoint next_event() const override;
 
@@ -48,6 +50,8 @@ class SocketcandBus final : public Bus {
     TimePoint time;
   };
 
+  bool is_open() const { return connection_ && !opening_; }
+  Result<void> begin(TimePoint limit, bool ends_by_signal);
   Result<void> settle(TimePoint limit, bool ends_by_signal);
   Result<void> judge() const;
   Result<void> fill();
@@ -61,6 +65,7 @@ class SocketcandBus final : public Bus {
   SocketcandPlace place_;
   std::optional<TcpClient> connection_;
   std::optional<SocketcandDialogue> dialogue_;
+  bool opening_ = false;       ///< The interface is not open yet.
   std::optional<Error> lost_;  ///< Why there is no connection any more.
   SocketcandReader reader_;
   ForeignClock stamps_;

@@ -1,6 +1,7 @@
 #include "session/adapter_link.hpp"
 
 #include "can/slcan_link.hpp"
+#include "can/slcan_opening.hpp"
 #include "session/can_network.hpp"
 #include "session/open_bus.hpp"
 
@@ -8,7 +9,7 @@ namespace servoctl::session {
 namespace {
 
 /// So long may an adapter take to be there again.
-constexpr Duration kAdapterBack = std::chrono::seconds(2);
+constexpr Duration kAdapterBack = can::SlcanOpening::kLongest;
 
 /// The bus of the session, for who may not own it.
 class LentBus final : public can::Bus {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <cerrno>
 
+#include "can/slcan_opening.hpp"
 #include "drive/bitrate.hpp"
 #include "session/scan.hpp"
 
@@ -10,7 +11,7 @@ namespace servoctl::session {
 namespace {
 
 /// So long may an adapter take to come up.
-constexpr Duration kComingUp = std::chrono::seconds(2);
+constexpr Duration kComingUp = can::SlcanOpening::kLongest;
 
 /// Empty where the bitrate cannot be had.
 Result<bool> tune(Session& session, can::LinkControl& link, std::uint32_t bitrate) {

@@ -27,13 +27,12 @@ class BusReturn {
   /// Tells Options::tell.
   static Tell to_people(Session& session);
 
-  /// After Errc::bus: waits until the bus is back, `end` at most (kNever: until somebody interrupts); an
-  /// adapter or a server that does not answer while it is opened may take some seconds longer. What was heard
-  /// is not taken for going on meanwhile: the line after this one opens the bus anew (Session::was_away).
-  /// Errors: `lost` itself, where it is not back, somebody interrupts, it never comes back, or is lost again
-  /// at once; and where servoctl sends something regularly or has left a drive energised, which ends with the
-  /// bus. Errc::refused where one of the nodes is another drive now; one that does not answer yet is heard
-  /// when it starts.
+  /// After Errc::bus: waits until the bus is back, `end` at most (kNever: until somebody interrupts).
+  /// What was heard is not taken for going on meanwhile: the line after this one opens the bus anew
+  /// (Session::was_away). Errors: `lost` itself, where it is not back, somebody interrupts, it never comes
+  /// back, or is lost again at once; and where servoctl sends something regularly or has left a drive
+  /// energised, which ends with the bus. Errc::refused where one of the nodes is another drive now; one that
+  /// does not answer yet is heard when it starts.
   Result<void> wait(const Error& lost, TimePoint end);
 
  private:

@@ -5,6 +5,7 @@
 #include <sys/file.h>
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 
@@ -215,6 +216,39 @@ TEST(Slcan, AnAdapterThatIsPulledInTheMiddleOfALineIsToldAtOnce) {
   EXPECT_LT(bus->now() - begin, seconds(1));
   EXPECT_FALSE(bus->send(slcan_frame("601#00")));
   EXPECT_EQ(bus->poll_fd(), -1) << "a port that is held keeps its number";
+}
+
+TEST(Slcan, AnOpeningThatTakesLongerThanARecoveryGoesOnWithTheNextOne) {
+  const auto link = std::filesystem::path(testing::TempDir()) / "slcan-opens-late";
+  const auto point_to = [&](const std::string& path) {
+    std::filesystem::remove(link);
+    std::filesystem::create_symlink(path, link);
+  };
+  ScriptedAdapter before;
+  point_to(before.path());
+  auto bus = open_slcan(link.string() + "@1M");
+  ASSERT_TRUE(bus);
+  before.unplug();
+  EXPECT_FALSE((*bus)->receive((*bus)->now() + seconds(1)));
+  std::atomic<int> opened = 0;
+  ScriptedAdapter after([&](const std::string& command) {
+    if (command == "C") nap(milliseconds(200));
+    if (command == "O") ++opened;
+    return ScriptedAdapter::good(command);
+  });
+  point_to(after.path());
+  Result<void> back = fail(Errc::bus, "");
+  int tries = 0;
+  for (; tries < 200 && !back; ++tries) {
+    const auto begin = (*bus)->now();
+    back = (*bus)->recover(begin + milliseconds(20));
+    EXPECT_LT((*bus)->now() - begin, milliseconds(250)) << "it ends by its deadline";
+    if (!back) EXPECT_FALSE((*bus)->send(slcan_frame("601#00"))) << "it is not open yet";
+  }
+  EXPECT_TRUE(back);
+  EXPECT_GT(tries, 3);
+  EXPECT_EQ(opened, 1);
+  EXPECT_TRUE((*bus)->send(slcan_frame("601#00")));
 }
 
 TEST(Slcan, AnAdapterThatComesBackIsOpenedAnew) {

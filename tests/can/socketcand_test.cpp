@@ -197,6 +197,30 @@ TEST(Socketcand, AConnectionThatIsClosedIsToldAtOnceAndOpenedAnew) {
   EXPECT_TRUE(server.hears("< send 602 1 0 >"));
 }
 
+TEST(Socketcand, AnOpeningThatTakesLongerThanARecoveryGoesOnWithTheNextOne) {
+  std::atomic<int> opened = 0;
+  ScriptedServer server([&](const std::string& element) {
+    // Behind the loss the interface takes 300 ms.
+    if (element.starts_with("< open ") && ++opened == 2) nap(milliseconds(300));
+    return ScriptedServer::good(element);
+  });
+  const auto bus = open_socketcand(server.place());
+  ASSERT_TRUE(bus);
+  server.hang_up();
+  ASSERT_FALSE((*bus)->receive((*bus)->now() + seconds(5)));
+  Result<void> back = fail(Errc::bus, "");
+  int tries = 0;
+  for (; tries < 200 && !back; ++tries) {
+    const auto begin = (*bus)->now();
+    back = (*bus)->recover(begin + milliseconds(20));
+    EXPECT_LT((*bus)->now() - begin, milliseconds(250)) << "it ends by its deadline";
+    if (!back) EXPECT_FALSE((*bus)->send(server_frame("601#00"))) << "it is not open yet";
+  }
+  EXPECT_TRUE(back);
+  EXPECT_GT(tries, 3);
+  EXPECT_EQ(opened, 2);
+}
+
 TEST(Socketcand, WhatTheServerRefusesIsTold) {
   ScriptedServer server([](const std::string& element) {
     return element.starts_with("< open ") ? "< error could not open bus >" : ScriptedServer::good(element);

@@ -79,6 +79,20 @@ for words in (["backup", "hung.json"], ["watch", "0x6041", "--for", "6s"], ["mon
         what = "no answer within" if words[0] == "backup" else "does not answer any more"
         check(f"a server that hangs ends {words} with an error\n{said}", line.returncode == (4 if words[0] == "backup" else 3)
               and said.count("error:") == 1 and what in said and time.monotonic() - begun < 8)
+        if words[0] == "monitor":
+            # Ctrl-C ends the wait at once, whatever the server does not answer.
+            hanging.send_signal(signal.SIGCONT)
+            time.sleep(0.2)
+            line = subprocess.Popen([servoctl, "-b", far, "monitor"], env=env, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                    text=True)
+            time.sleep(0.7)
+            hanging.send_signal(signal.SIGSTOP)
+            time.sleep(4.5)
+            line.send_signal(signal.SIGINT)
+            begun = time.monotonic()
+            out = line.communicate(timeout=60)[0]
+            check(f"Ctrl-C ends the wait for a server that hangs: {time.monotonic() - begun:.1f} s\n{out}",
+                  "waiting until it can be used again" in out and time.monotonic() - begun < 1)
         check("no file is made of half a backup", not os.path.exists("hung.json"))
         hanging.send_signal(signal.SIGCONT)
         time.sleep(0.2)
