@@ -7,10 +7,9 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "canopen/sdo_abort.hpp"
 #include "drive/naming.hpp"
 #include "report/catalogue.hpp"
-#include "show/fault_records.hpp"
+#include "show/explanation_parts.hpp"
 #include "show/lead_words.hpp"
 #include "show/object_records.hpp"
 #include "show/records.hpp"
@@ -20,25 +19,9 @@ namespace {
 
 using report::Value;
 
-constexpr std::string_view kProgram = "servoctl";
-
-drive::Topic heading(std::string_view family, std::string kind, std::string name, std::string title,
-                     std::string title_zh) {
-  drive::Topic out;
-  out.family = family;
-  out.kind = std::move(kind);
-  out.name = std::move(name);
-  out.title = std::move(title);
-  out.title_zh = std::move(title_zh);
-  return out;
-}
-
-/// The lines of the manual behind a line of a table.
-std::string source_of_line(std::uint32_t line) { return line == 0 ? std::string() : fmt::format("{}", line); }
-
 Explanation of_entry(const drive::Profile& profile, const od::Object& object, const od::Entry& entry,
                      bool chinese) {
-  auto topic = heading(
+  auto topic = topic_heading(
       profile.family, "object", drive::entry_name(object, entry),
       fmt::format("{}: {}", to_string(entry.address), entry.name),
       entry.name_zh.empty() ? std::string() : fmt::format("{}：{}", to_string(entry.address), entry.name_zh));
@@ -48,8 +31,8 @@ Explanation of_entry(const drive::Profile& profile, const od::Object& object, co
 
 Explanation of_object(const drive::Profile& profile, const od::Object& object, bool chinese) {
   if (object.entries.size() == 1) return of_entry(profile, object, object.entries.front(), chinese);
-  auto topic = heading(profile.family, "object", od::identifier(object.name),
-                       fmt::format("0x{:04X}: {}", object.index, object.name), {});
+  auto topic = topic_heading(profile.family, "object", od::identifier(object.name),
+                             fmt::format("0x{:04X}: {}", object.index, object.name), {});
   topic.object = ObjectAddress{object.index, 0};
   std::vector<report::Record> records;
   for (const auto& entry : object.entries)
@@ -97,8 +80,9 @@ void add_parameters(const TopicQuery& query, const drive::Profile& profile, bool
     const bool placed = address && parameter.object == address;
     const bool meant = &parameter == by_id || (!by_name_only && (named || placed));
     if (!meant && (by_name_only || !query.mentions(parameter.name + "\n" + parameter.name_zh))) continue;
-    auto topic = heading(profile.family, "parameter", parameter.id, parameter.id + " " + parameter.name,
-                         parameter.name_zh.empty() ? std::string() : parameter.id + " " + parameter.name_zh);
+    auto topic =
+        topic_heading(profile.family, "parameter", parameter.id, parameter.id + " " + parameter.name,
+                      parameter.name_zh.empty() ? std::string() : parameter.id + " " + parameter.name_zh);
     topic.object = parameter.object;
     topic.line = source_of_line(parameter.line);
     out.push_back({std::move(topic),
@@ -106,104 +90,6 @@ void add_parameters(const TopicQuery& query, const drive::Profile& profile, bool
                    {},
                    parameter_record(parameter, chinese)});
   }
-}
-
-/// The code of a fault: up to four hexadecimal digits, however it is marked as such.
-std::optional<std::uint64_t> hex_in(std::string_view text, std::size_t most_digits) {
-  auto digits = lower(text);
-  if (digits.starts_with("0x"))
-    digits.erase(0, 2);
-  else if (digits.ends_with("h"))
-    digits.pop_back();
-  if (digits.size() > most_digits) return std::nullopt;
-  return parse_digits(digits, 16);
-}
-
-Explanation of_faults(const drive::Profile& profile, const std::vector<const drive::Fault*>& faults,
-                      bool chinese) {
-  const auto& first = *faults.front();
-  const auto code = first.code ? fmt::format("0x{:04X}", *first.code) : std::string();
-  const auto name = !first.panel.empty() ? first.panel : code.empty() ? first.name : code;
-  if (faults.size() == 1) {
-    const auto title_zh = first.name_zh.empty() ? std::string() : name + " " + first.name_zh;
-    auto topic = heading(profile.family, "fault", name, name + " " + first.name, title_zh);
-    topic.line = source_of_line(first.line);
-    return {std::move(topic), Found::fault, {}, fault_record(first, chinese)};
-  }
-  auto shared = fmt::format("{}: {} faults share this code", code, faults.size());
-  auto shared_zh = report::in_chinese(shared);
-  return {heading(profile.family, "fault", code, std::move(shared), std::move(shared_zh)),
-          Found::fault,
-          {},
-          fault_table(faults, chinese)};
-}
-
-/// As people write what a panel shows: `AL09` for `AL.09`.
-std::string without_signs(std::string_view panel) {
-  std::string out(panel);
-  std::erase_if(out, [](char c) { return c == '.' || c == '-'; });
-  return out;
-}
-
-void add_faults(const TopicQuery& query, const drive::Profile& profile, bool by_name_only, bool chinese,
-                std::vector<Explanation>& out) {
-  constexpr std::size_t kDigits = 4;
-  constexpr std::size_t kTellingCode = 3;
-  const auto code =
-      query.whole().size() < kDigits || by_name_only ? std::nullopt : hex_in(query.whole(), kDigits);
-  std::vector<const drive::Fault*> of_code;
-  std::vector<const drive::Fault*> named;
-  for (const auto& fault : profile.faults) {
-    const bool second = fault.extra.size() >= kTellingCode && query.names(fault.extra);
-    const bool called = query.names(fault.panel) || query.names_display(fault.panel) || second ||
-                        (!by_name_only && (query.names(fault.name) || query.names(fault.name_zh)));
-    const bool of_its_code = !called && code && fault.code == code;
-    if (called) named.push_back(&fault);
-    if (of_its_code) of_code.push_back(&fault);
-    if (!called && !of_its_code && !by_name_only && query.mentions(fault.name + "\n" + fault.name_zh)) {
-      out.push_back(of_faults(profile, {&fault}, chinese));
-      out.back().found = Found::title;
-    }
-  }
-  if (named.empty())
-    for (const auto& fault : profile.faults)
-      if (!fault.panel.empty() && query.names(without_signs(fault.panel))) named.push_back(&fault);
-  for (const auto* fault : named) out.push_back(of_faults(profile, {fault}, chinese));
-  if (of_code.size() > kFewFaults) {
-    out.push_back(of_faults(profile, of_code, chinese));
-  } else {
-    for (const auto* fault : of_code) out.push_back(of_faults(profile, {fault}, chinese));
-  }
-}
-
-/// Eight hexadecimal digits: of a class that CiA 301 has, or one that the family's own words tell of.
-void add_abort(const TopicQuery& query, const drive::Profile& profile, std::vector<Explanation>& out) {
-  constexpr std::size_t kDigits = 8;
-  const auto code = hex_in(query.whole(), kDigits);
-  if (!code || query.whole().size() < kDigits) return;
-  const auto number = static_cast<std::uint32_t>(*code);
-  const auto error_class = number >> 24U;
-  const bool own = profile.rules.abort_texts.count(number) > 0;
-  if (!own && error_class != 0x05 && error_class != 0x06 && error_class != 0x08) return;
-  const auto name = fmt::format("0x{:08X}", number);
-  const std::string words_zh(report::chinese_word(abort_words(&profile, true, number)));
-  const auto words = abort_words(&profile, false, number);
-  constexpr std::string_view kTitle = "SDO abort code {}: {}";
-  auto topic =
-      heading(profile.family, "abort", name, fmt::format(kTitle, name, words),
-              words_zh == words ? std::string()
-                                : fmt::format(fmt::runtime(report::chinese_word(kTitle)), name, words_zh));
-  topic.text = canopen::sdo_abort_hint(number);
-  topic.text_zh = report::in_chinese(topic.text);
-  topic.line = canopen::is_standard_sdo_abort(number) ? "CiA 301, 7.2.4.3.17" : "";
-  out.push_back({std::move(topic), Found::abort});
-}
-
-void add_exit_code(const TopicQuery& query, std::vector<Explanation>& out) {
-  auto topic = exit_code_topic();
-  const auto match = query.match(topic, nullptr);
-  if (!match || (match->found != Found::name && match->found != Found::row)) return;
-  out.push_back({std::move(topic), Found::exit, match->rows});
 }
 
 void add_topics(const TopicQuery& query, const Library& library, std::vector<Explanation>& out) {
@@ -214,10 +100,6 @@ void add_topics(const TopicQuery& query, const Library& library, std::vector<Exp
     out.push_back({topic, match->found, std::move(match->rows)});
   }
 }
-
-}  // namespace
-
-namespace {
 
 std::vector<Explanation> explained(const TopicQuery& query, std::span<const Library> libraries,
                                    bool chinese) {
@@ -238,6 +120,19 @@ std::vector<Explanation> explained(const TopicQuery& query, std::span<const Libr
 
 }  // namespace
 
+drive::Topic topic_heading(std::string_view family, std::string kind, std::string name, std::string title,
+                           std::string title_zh) {
+  drive::Topic out;
+  out.family = family;
+  out.kind = std::move(kind);
+  out.name = std::move(name);
+  out.title = std::move(title);
+  out.title_zh = std::move(title_zh);
+  return out;
+}
+
+std::string source_of_line(std::uint32_t line) { return line == 0 ? std::string() : fmt::format("{}", line); }
+
 std::vector<Explanation> explanations(const TopicQuery& query, std::span<const Library> libraries,
                                       bool chinese) {
   auto out = explained(query, libraries, chinese);
@@ -245,6 +140,8 @@ std::vector<Explanation> explanations(const TopicQuery& query, std::span<const L
   if (!led || (!out.empty() && out.front().found < Found::title)) return out;
   auto behind = explained(TopicQuery(led->rest), libraries, chinese);
   std::erase_if(behind, [&](const Explanation& each) { return each.found != led->found; });
+  if (behind.empty() && led->found == Found::fault)
+    for (const auto& library : libraries) add_counted_faults(led->rest, library, chinese, behind);
   out.insert(out.begin(), std::make_move_iterator(behind.begin()), std::make_move_iterator(behind.end()));
   return out;
 }
@@ -262,37 +159,6 @@ std::vector<std::string> explained_names(std::span<const Library> libraries) {
     for (const auto& fault : library.profile->faults)
       if (!fault.panel.empty()) out.push_back(fault.panel);
   }
-  return out;
-}
-
-drive::Topic exit_code_topic() {
-  const auto chinese = [](std::string_view english) { return std::string(report::chinese_word(english)); };
-  constexpr std::string_view kTitle = "Exit codes of servoctl";
-  constexpr std::string_view kCode = "exit code";
-  auto out = heading(kProgram, "exit", "exit codes", std::string(kTitle), chinese(kTitle));
-  out.also = {"exit", std::string(kCode), chinese(kCode)};
-  out.columns = {std::string(kCode), "error.code"};
-  out.columns_zh = {chinese(kCode), "error.code"};
-  const auto row = [&](int code, std::string_view name, std::string_view text) {
-    out.rows.push_back({{fmt::format("{}", code), std::string(name)}, std::string(text), chinese(text), {}});
-  };
-  const auto error = [&](Errc code, std::string_view text) {
-    row(exit_code(code), servoctl::name(code), text);
-  };
-  row(0, "", "done");
-  error(Errc::negative, "it ran, and the answer is no: a difference, a failed check, an incomplete result");
-  error(Errc::usage, "the request itself is wrong; nothing was sent");
-  error(Errc::bus, "the bus is missing, down or lost");
-  error(Errc::timeout, "the node did not answer in time");
-  error(Errc::sdo_abort, "the drive answered and refused");
-  error(Errc::protocol, "the drive answered with something the protocol does not allow");
-  error(Errc::file, "a file cannot be read, written or parsed");
-  error(
-      Errc::refused,
-      "refused for safety: a confirmation is missing (--yes), --read-only forbids it, or the drive is not what "
-      "-d says");
-  error(Errc::bug, "a fault of servoctl itself");
-  error(Errc::interrupted, "interrupted by Ctrl-C");
   return out;
 }
 

@@ -6,14 +6,11 @@
 #include "base/folded.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "show/printed_number.hpp"
+#include "show/words_in_text.hpp"
 
 namespace servoctl::show {
 namespace {
-
-bool is_word_sign(char c) {
-  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80;
-}
-bool is_ascii_word_sign(char c) { return is_word_sign(c) && static_cast<unsigned char>(c) < 0x80; }
 
 /// What names are compared by.
 std::string key_of(std::string_view text) {
@@ -25,12 +22,11 @@ std::string key_of(std::string_view text) {
 /// What displays are compared by: without marks between letters and digits, and zeros before a number.
 std::string display_key(std::string_view text) {
   std::string out;
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   const auto key = key_of(text);
   for (std::size_t i = 0; i < key.size(); ++i) {
-    const bool behind_digit = !out.empty() && is_digit(out.back());
+    const bool behind_digit = !out.empty() && is_decimal_digit(out.back());
     const bool mark = key[i] == '.' || key[i] == '-';
-    const bool zero = key[i] == '0' && i + 1 < key.size() && is_digit(key[i + 1]);
+    const bool zero = key[i] == '0' && i + 1 < key.size() && is_decimal_digit(key[i + 1]);
     if ((mark || zero) && !behind_digit) continue;
     out += key[i];
   }
@@ -53,16 +49,6 @@ std::optional<std::int64_t> number_in(std::string_view word) {
   return number ? number->as_signed() : std::nullopt;
 }
 
-/// `7` at the end of `FunIN.07`, or the whole of `7`; not the last digits of `0x17` or `1-7`.
-std::optional<std::int64_t> number_at_end(std::string_view cell) {
-  auto at = cell.size();
-  while (at > 0 && cell[at - 1] >= '0' && cell[at - 1] <= '9') --at;
-  const auto before = cell.substr(0, at);
-  if (at == cell.size() || before.find_first_of("0123456789") != std::string_view::npos) return std::nullopt;
-  if (before == "-" || before == "+") return number_in(cell);
-  return number_in(cell.substr(at));
-}
-
 /// Whether the cell is this number with a unit: `500 kbit/s` is `500` and `500k`.
 bool is_quantity(std::string_view cell, std::string_view word) {
   if (word.empty() || word.front() < '0' || word.front() > '9') return false;
@@ -73,18 +59,35 @@ bool is_quantity(std::string_view cell, std::string_view word) {
   return !all_digits || cell.substr(word.size()).starts_with(" ");
 }
 
-/// Whether the word begins a word of the text; one of one or two letters has to be all of it. Chinese knows
-/// no such borders.
-bool has_word(std::string_view text, std::string_view word) {
-  if (word.empty()) return false;
-  const bool bounded = is_ascii_word_sign(word.front());
-  for (auto at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
-    const auto end = at + word.size();
-    const bool begins = at == 0 || !is_ascii_word_sign(text[at - 1]);
-    const bool ends = end == text.size() || !is_ascii_word_sign(text[end]);
-    if (!bounded || (begins && (ends || word.size() > 2))) return true;
-  }
-  return false;
+/// Whether the cells of the column may be numbers of rows: not steps, nor what a bit or an input that heads
+/// the column (`bit 7`, `12`, `SP1`) is in each row.
+bool is_countable(std::string_view heading) {
+  return heading != "step" && (heading.empty() || !is_decimal_digit(heading.back()));
+}
+
+bool has_steps(const drive::Topic& topic) {
+  return std::find(topic.columns.begin(), topic.columns.end(), "step") != topic.columns.end();
+}
+
+/// The column that numbers the rows: the first, or behind names one that is called so.
+std::size_t number_column(const drive::Topic& topic) {
+  constexpr std::array<std::string_view, 4> kCalled{"value", "no.", "number", "code"};
+  const auto& columns = topic.columns;
+  const auto first =
+      static_cast<std::size_t>(std::find_if(columns.begin(), columns.end(), is_countable) - columns.begin());
+  const bool numbers =
+      first < columns.size() &&
+      std::any_of(topic.rows.begin(), topic.rows.end(), [&](const drive::TopicRow& row) {
+        return std::any_of(row.cells[first].begin(), row.cells[first].end(), is_decimal_digit);
+      });
+  const auto called = std::find_first_of(columns.begin(), columns.end(), kCalled.begin(), kCalled.end());
+  return numbers || called == columns.end() ? first : static_cast<std::size_t>(called - columns.begin());
+}
+
+/// Words that tell by themselves: no number, one that says that it is hexadecimal, one of three digits.
+bool is_telling(std::string_view word) {
+  constexpr std::size_t kTellingDigits = 3;
+  return !number_in(word) || is_marked_hex(word) || word.size() >= kTellingDigits;
 }
 
 /// What people call the kinds of topics that are counted.
@@ -177,22 +180,39 @@ bool TopicQuery::names_value(const drive::Topic& topic, const od::Dictionary* di
   return is_called(topic.kind, counted_) || is_called(topic.kind, words);
 }
 
+/// Whether a cell of a topic that the words before name is the last word. A number is looked for among the
+/// numbers of the rows, and in a column that these words call by its heading; of cables all cells are
+/// quantities.
+bool TopicQuery::is_counted(const drive::Topic& topic, std::size_t column, std::string_view cell,
+                            std::size_t numbers) const {
+  const auto& heading = topic.columns[column];
+  const auto& word = words_.back();
+  if (heading == "step") return false;  // What the words count are no steps.
+  if (is_quantity(cell, word)) return true;
+  if (cell == word && is_telling(word)) return true;
+  if (is_marked_hex(word) && is_marked_hex(cell)) return is_number(cell, word);
+  const bool quantities = topic.kind == "cable" || topic.kind == "wiring";
+  const bool called =
+      quantities || std::any_of(words_.begin(), words_.end() - 1,
+                                [&](const std::string& before) { return has_word(folded(heading), before); });
+  if (column != numbers && !(called && is_countable(heading))) return false;
+  return is_number(cell, word) || (column == numbers && is_counted_by(cell, word));
+}
+
 /// Rows with a cell that is all that was typed, or, of a topic that the words before name, the last word.
 std::vector<std::size_t> TopicQuery::rows_of(const drive::Topic& topic, bool counted) const {
-  constexpr std::size_t kTellingDigits = 3;
-  const bool telling = !number_in(key_) || key_.size() >= kTellingDigits;
+  const bool telling = is_telling(key_);
   const bool counts = counted && !assigned_ && words_.size() > 1;
   const auto about = counts ? haystack(topic) + "\n" + topic.kind : std::string();
   const bool named = counts && std::all_of(words_.begin(), words_.end() - 1,
                                            [&](const std::string& word) { return has_word(about, word); });
+  if (!telling && !named) return {};
+  const auto numbers = number_column(topic);
+  const bool steps = has_steps(topic);
   const auto is_meant = [&](const drive::TopicRow& row, std::size_t column) {
-    const auto& cell = row.cells[column];
-    if (telling && names(cell)) return true;
-    // What the words count are no steps.
-    if (!named || topic.columns[column] == "step") return false;
-    const auto text = folded(cell);
-    return text == words_.back() || (number_ && number_at_end(text) == number_) ||
-           is_quantity(text, words_.back());
+    const auto cell = folded(row.cells[column]);
+    if (telling && (names(cell) || (column == numbers && !steps && is_hex_number(cell, key_)))) return true;
+    return named && is_counted(topic, column, cell, numbers);
   };
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < topic.rows.size(); ++i)

@@ -49,6 +49,8 @@ class TopicQuery {
  private:
   bool names_topic(const drive::Topic& topic) const;
   bool names_value(const drive::Topic& topic, const od::Dictionary* dictionary) const;
+  bool is_counted(const drive::Topic& topic, std::size_t column, std::string_view cell,
+                  std::size_t numbers) const;
   std::vector<std::size_t> rows_of(const drive::Topic& topic, bool counted) const;
   bool is_in(std::string_view text) const;
 

@@ -78,12 +78,70 @@ TEST(TopicQuery, FindsRowsByACellOrByTheNumberBehindWhatIsCounted) {
   EXPECT_EQ(found("DI 28", inputs()), "row 1");
   EXPECT_EQ(found("input 028", inputs()), "row 1");
   EXPECT_EQ(found("digital home", inputs()), "row 1");
-  EXPECT_EQ(found("DI 31", inputs()), "-");
+  EXPECT_EQ(found("DI 49", inputs()), "-");
   EXPECT_EQ(found("DO 28", inputs()), "-");
   EXPECT_EQ(found("5", inputs()), "text") << "a digit alone names no row";
   auto steps = inputs();
   steps.columns[0] = "step";
   EXPECT_EQ(found("DI 28", steps), "text") << "nobody counts the steps of a procedure";
+}
+
+TEST(TopicQuery, ANumberIsThatOfTheRowAndNoEndOfAnother) {
+  auto topic = inputs();
+  topic.columns = {"value", "symbol"};
+  topic.rows = {{{"1", "SON"}, "", "", "1"},     {{"10", "SP1"}, "", "", "2"},
+                {{"0x1B", "TRQ1"}, "", "", "3"}, {{"28", "A1"}, "", "", "4"},
+                {{"Er.15", "15"}, "", "", "5"},  {{"Er.A5", "GEAR1"}, "", "", "6"},
+                {{"AL-16", "-"}, "", "", "7"},   {{"11, 19", "-"}, "", "", "8"},
+                {{"20-22", "-"}, "", "", "9"},   {{"Er17-0", "-"}, "", "", "10"}};
+  EXPECT_EQ(found("DI 1", topic), "row 0") << "not SP1, TRQ1, A1 and GEAR1";
+  for (const auto* words : {"DI 1B", "DI 0x1b", "DI 1Bh", "DI 001b"})
+    EXPECT_EQ(found(words, topic), "row 2") << words;
+  for (const auto* words : {"DI 28", "DI 0x1C", "DI 1ch"}) EXPECT_EQ(found(words, topic), "row 3") << words;
+  EXPECT_EQ(found("DI 15", topic), "row 4");
+  EXPECT_EQ(found("DI 16", topic), "row 6");
+  EXPECT_EQ(found("DI 19", topic), "row 7");
+  EXPECT_EQ(found("DI 21", topic), "row 8");
+  for (const auto* words : {"DI 5", "DI 0", "DI 17", "DI 27", "DI 9", "DI 2"})
+    EXPECT_NE(found(words, topic).substr(0, 3), "row") << words;
+  EXPECT_EQ(found("DI symbol 15", topic), "-") << "the heading is no name of the topic";
+}
+
+TEST(TopicQuery, AHexadecimalNumberNamesTheRowByItself) {
+  auto topic = inputs();
+  topic.columns = {"code", "value"};
+  topic.rows = {
+      {{"0x001B", "27"}, "", "", "1"}, {{"27", "0x1C"}, "", "", "2"}, {{"20-30", "-"}, "", "", "3"}};
+  for (const auto* words : {"0x001B", "1Bh", "0x1b", "001B"}) {
+    EXPECT_EQ(found(words, topic), "row 0") << words;
+    EXPECT_EQ(TopicQuery(words).match_name(topic)->rows, std::vector<std::size_t>{0}) << words;
+  }
+  EXPECT_EQ(found("27", topic), "text");
+  topic.columns[1] = "step";
+  EXPECT_EQ(found("1Bh", topic), "-") << "what is written in a step is not its number";
+}
+
+TEST(TopicQuery, ColumnsOfBitsAndInputsNumberNoRows) {
+  auto topic = inputs();
+  topic.kind = "bits";
+  topic.columns = {"command", "bit 7", "transition"};
+  topic.rows = {{{"Shutdown", "1", "2"}, "", "", "1"}, {{"Fault reset", "0", "1"}, "", "", "2"}};
+  for (const auto* words : {"bit 1", "DI 1"}) EXPECT_NE(found(words, topic).substr(0, 3), "row") << words;
+  topic.also = {"transition"};
+  EXPECT_EQ(found("transition 1", topic), "row 1");
+}
+
+TEST(TopicQuery, TextsMentionWholeNumbersOnly) {
+  auto topic = inputs();
+  topic.rows.clear();
+  const auto mentions = [&](const char* text) {
+    topic.text = text;
+    return found("15", topic) == "text";
+  };
+  for (const auto* text : {"bit 15 is", "bits 8-15", "15-16", "15", "(15).", "Er.15", "PA-15", "为15时"})
+    EXPECT_TRUE(mentions(text)) << text;
+  for (const auto* text : {"0.15 mm", "15.5 kg", "method -15", "P3-15", "1,15", "1500", "115", "15ms"})
+    EXPECT_FALSE(mentions(text)) << text;
 }
 
 TEST(TopicQuery, TakesOnlyNamesAndWholeCellsWhereNobodyNamedTheFamily) {
@@ -117,6 +175,26 @@ TEST(TopicQuery, FindsWordsInTitlesBeforeThoseInTexts) {
   EXPECT_EQ(found("di sab", inputs()), "-");
   EXPECT_EQ(found("motor encoder", inputs()), "-");
   EXPECT_EQ(found("", inputs()), "-");
+}
+
+TEST(Explanations, AWordForFaultsLeadsToTheNumberOfADisplay) {
+  drive::Profile profile;
+  for (const auto* panel : {"Err-5", "Err-52", "Er52-1"}) {
+    drive::Fault fault;
+    fault.panel = panel;
+    profile.faults.push_back(fault);
+  }
+  const auto names = [&](std::string_view words, bool by_name_only) {
+    const Library library{&profile, {}, by_name_only};
+    std::string out;
+    for (const auto& each : explanations(TopicQuery(words), {&library, 1}, false))
+      out += each.topic.name + " ";
+    return out;
+  };
+  for (const auto* words : {"fault 52", "alarm 052", "故障码52"})
+    EXPECT_EQ(names(words, false), "Err-52 ") << words;
+  EXPECT_EQ(names("fault 2", false), "");
+  EXPECT_EQ(names("fault 52", true), "") << "nobody named the family";
 }
 
 TEST(ExitCodes, TellEveryErrorOnce) {

@@ -1,0 +1,83 @@
+#include "show/explanation_parts.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/folded.hpp"
+#include "report/catalogue.hpp"
+#include "show/fault_records.hpp"
+#include "show/printed_number.hpp"
+
+namespace servoctl::show {
+namespace {
+
+Explanation of_faults(const drive::Profile& profile, const std::vector<const drive::Fault*>& faults,
+                      bool chinese) {
+  const auto& first = *faults.front();
+  const auto code = first.code ? fmt::format("0x{:04X}", *first.code) : std::string();
+  const auto name = !first.panel.empty() ? first.panel : code.empty() ? first.name : code;
+  if (faults.size() == 1) {
+    const auto title_zh = first.name_zh.empty() ? std::string() : name + " " + first.name_zh;
+    auto topic = topic_heading(profile.family, "fault", name, name + " " + first.name, title_zh);
+    topic.line = source_of_line(first.line);
+    return {std::move(topic), Found::fault, {}, fault_record(first, chinese)};
+  }
+  auto shared = fmt::format("{}: {} faults share this code", code, faults.size());
+  auto shared_zh = report::in_chinese(shared);
+  return {topic_heading(profile.family, "fault", code, std::move(shared), std::move(shared_zh)),
+          Found::fault,
+          {},
+          fault_table(faults, chinese)};
+}
+
+/// As people write what a panel shows: `AL09` for `AL.09`.
+std::string without_signs(std::string_view panel) {
+  std::string out(panel);
+  std::erase_if(out, [](char c) { return c == '.' || c == '-'; });
+  return out;
+}
+
+}  // namespace
+
+void add_faults(const TopicQuery& query, const drive::Profile& profile, bool by_name_only, bool chinese,
+                std::vector<Explanation>& out) {
+  constexpr std::size_t kDigits = 4;
+  constexpr std::size_t kTellingCode = 3;
+  const auto code =
+      query.whole().size() < kDigits || by_name_only ? std::nullopt : code_in(query.whole(), kDigits);
+  std::vector<const drive::Fault*> of_code;
+  std::vector<const drive::Fault*> named;
+  for (const auto& fault : profile.faults) {
+    const bool second = fault.extra.size() >= kTellingCode && query.names(fault.extra);
+    const bool called = query.names(fault.panel) || query.names_display(fault.panel) || second ||
+                        (!by_name_only && (query.names(fault.name) || query.names(fault.name_zh)));
+    const bool of_its_code = !called && code && fault.code == code;
+    if (called) named.push_back(&fault);
+    if (of_its_code) of_code.push_back(&fault);
+    if (!called && !of_its_code && !by_name_only && query.mentions(fault.name + "\n" + fault.name_zh)) {
+      out.push_back(of_faults(profile, {&fault}, chinese));
+      out.back().found = Found::title;
+    }
+  }
+  if (named.empty())
+    for (const auto& fault : profile.faults)
+      if (!fault.panel.empty() && query.names(without_signs(fault.panel))) named.push_back(&fault);
+  for (const auto* fault : named) out.push_back(of_faults(profile, {fault}, chinese));
+  if (of_code.size() > kFewFaults) {
+    out.push_back(of_faults(profile, of_code, chinese));
+  } else {
+    for (const auto* fault : of_code) out.push_back(of_faults(profile, {fault}, chinese));
+  }
+}
+
+void add_counted_faults(std::string_view number, const Library& library, bool chinese,
+                        std::vector<Explanation>& out) {
+  if (library.by_name_only) return;
+  for (const auto& fault : library.profile->faults)
+    if (is_counted_by(folded(fault.panel), folded(number)))
+      out.push_back(of_faults(*library.profile, {&fault}, chinese));
+}
+
+}  // namespace servoctl::show
