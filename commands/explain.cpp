@@ -30,10 +30,11 @@ struct Shelf {
   std::vector<show::Library> libraries;
 };
 
-/// What the program knows of itself it tells itself.
+/// What the program knows by itself it tells itself.
 void leave_out_own(std::vector<drive::Topic>& topics) {
-  const show::TopicQuery own(show::exit_code_topic().name);
-  std::erase_if(topics, [&](const drive::Topic& topic) { return own.names(topic.name); });
+  for (const auto name : {show::kExitCodes, show::kAlStatusCodes})
+    std::erase_if(topics,
+                  [&](const drive::Topic& topic) { return show::TopicQuery(name).names(topic.name); });
 }
 
 /// The family that the line names; else the standard, and of all families what has the very name.
@@ -43,6 +44,7 @@ Result<Shelf> open_shelf(Context& context) {
     auto topics = drive::load_topics(*context.profile, context.drive_folders);
     if (!topics) return fail(topics.error());
     leave_out_own(*topics);
+    topics->push_back(show::al_status_topic());
     out.libraries.push_back({context.profile, std::move(*topics), false});
     return out;
   }
@@ -56,6 +58,7 @@ Result<Shelf> open_shelf(Context& context) {
     }
     leave_out_own(*topics);
     const bool standard = (*profile)->is_generic();
+    if (standard) topics->push_back(show::al_status_topic());
     out.profiles.push_back(std::move(*profile));
     show::Library library{out.profiles.back().get(), std::move(*topics), !standard};
     out.libraries.insert(standard ? out.libraries.begin() : out.libraries.end(), std::move(library));
@@ -177,10 +180,11 @@ const Command kExplain{
     .summary = "Say what a word means: object, fault, code, plug, LED, mode, homing method",
     .details =
         "Works without a bus. Knows objects, panel parameters, faults, SDO abort codes, exit codes (`explain "
-        "exit 5`), and the topics of the manuals: wiring, plugs, panel, LEDs, states, modes, homing methods "
-        "(`explain homing 7`), bits, inputs and outputs (`explain DI 28`). Words that are no name are looked "
-        "for in titles and texts. Without -d the standard and what has this very name in any family; without a "
-        "word the topics by kind. --lang zh takes the Chinese texts.",
+        "exit 5`), AL status codes of EtherCAT (`explain 0x001B`), and the topics of the manuals: wiring, plugs, "
+        "panel, LEDs, states, modes, homing methods (`explain homing 7`), bits, inputs and outputs (`explain DI "
+        "28`). A number is that of a row as it is printed, a hexadecimal one with 0x, h or neither. Words that "
+        "are no name are looked for in titles and texts. Without -d the standard and what has this very name in "
+        "any family; without a word the topics by kind. --lang zh takes the Chinese texts.",
     .parameters = kExplainParameters,
     .examples = kExplainExamples,
     .needs = Needs::nothing,

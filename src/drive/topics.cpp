@@ -12,8 +12,6 @@ namespace servoctl::drive {
 namespace fs = std::filesystem;
 namespace {
 
-/// The family whose topics hold for every drive.
-constexpr std::string_view kStandardFamily = "cia402";
 constexpr std::string_view kTopicFile = ".topics.toml";
 
 std::string family_of_file(const fs::path& path) {

@@ -15,6 +15,9 @@
 
 namespace servoctl::drive {
 
+/// The family whose topics hold for every drive.
+inline constexpr std::string_view kStandardFamily = "cia402";
+
 /// One row of a topic's table: as many cells as the topic has columns, and what the row is about.
 struct TopicRow {
   std::vector<std::string> cells;  ///< Numbers, signs and names of signals: the same in every language.

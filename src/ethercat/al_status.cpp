@@ -142,6 +142,12 @@ std::string al_status_hint(std::uint16_t code) {
   return row != nullptr ? std::string(row->hint) : "look the AL status code up in the drive's manual";
 }
 
+std::vector<std::uint16_t> al_status_codes() {
+  std::vector<std::uint16_t> out;
+  for (const auto& row : kRows) out.push_back(row.code);
+  return out;
+}
+
 AlState next_al_state(AlState from, AlState target) {
   if (from == target) return target;
   if (target == AlState::boot || from == AlState::boot) return from == AlState::init ? target : AlState::init;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/bytes.hpp"
 
@@ -31,6 +32,9 @@ AlStatus parse_al_status(ByteSpan registers);
 std::string al_status_text(std::uint16_t code);
 /// What to do about it; empty when the code leaves nothing to say.
 std::string al_status_hint(std::uint16_t code);
+
+/// The codes that have a text, in ascending order.
+std::vector<std::uint16_t> al_status_codes();
 
 /// The next state on the way from one to another: up one step at a time, down at once, BOOT from and to INIT
 /// only (ETG.1000.6, 6.4.1). `target` itself when they are the same.

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
+#include "ethercat/al_status.hpp"
 #include "report/catalogue.hpp"
 #include "show/printed_number.hpp"
 #include "show/records.hpp"
@@ -50,7 +52,7 @@ drive::Topic exit_code_topic() {
   constexpr std::string_view kTitle = "Exit codes of servoctl";
   constexpr std::string_view kCode = "exit code";
   auto out =
-      topic_heading(kProgram, "exit", "exit codes", std::string(kTitle), chinese_of(kTitle));
+      topic_heading(kProgram, "exit", std::string(kExitCodes), std::string(kTitle), chinese_of(kTitle));
   out.also = {"exit", std::string(kCode), chinese_of(kCode)};
   out.columns = {std::string(kCode), "error.code"};
   out.columns_zh = {chinese_of(kCode), "error.code"};
@@ -75,6 +77,34 @@ drive::Topic exit_code_topic() {
       "-d says");
   error(Errc::bug, "a fault of servoctl itself");
   error(Errc::interrupted, "interrupted by Ctrl-C");
+  return out;
+}
+
+drive::Topic al_status_topic() {
+  constexpr std::string_view kTitle = "AL status codes: why a slave refused or left a state";
+  constexpr std::string_view kText =
+      "A slave of EtherCAT tells the code in its register 0134h, beside the state it is in (0130h). `scan` shows "
+      "both, and what to do. Codes from 8000h on are the vendor's own.";
+  constexpr std::string_view kCode = "code";
+  auto out = topic_heading(drive::kStandardFamily, "state", std::string(kAlStatusCodes), std::string(kTitle),
+                           chinese_of(kTitle));
+  constexpr std::string_view kStatusCode = "AL status code";
+  out.also = {"AL status", std::string(kStatusCode), chinese_of(kStatusCode), "0134h", "0x0134"};
+  out.text = kText;
+  out.text_zh = chinese_of(kText);
+  out.columns = {std::string(kCode)};
+  out.columns_zh = {chinese_of(kCode)};
+  out.line = "ETG.1000.6, table 11; ETG.1020, 5.7";
+  for (const auto code : ethercat::al_status_codes()) {
+    auto text = ethercat::al_status_text(code);
+    auto text_zh = chinese_of(text);
+    const auto hint = ethercat::al_status_hint(code);
+    if (!hint.empty()) {
+      append(text, hint, "; ");
+      append(text_zh, chinese_of(hint), "；");
+    }
+    out.rows.push_back({{fmt::format("0x{:04X}", code)}, std::move(text), std::move(text_zh), {}});
+  }
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drive/topics.hpp"
@@ -35,8 +36,15 @@ std::vector<Explanation> explanations(const TopicQuery& query, std::span<const L
 /// The names that a query may have meant.
 std::vector<std::string> explained_names(std::span<const Library> libraries);
 
+/// Topics that stand in no file.
+inline constexpr std::string_view kExitCodes = "exit codes";
+inline constexpr std::string_view kAlStatusCodes = "AL status codes";
+
 /// `exit 5`, and all of them: what the exit codes of the program mean (README.md, "For scripts").
 drive::Topic exit_code_topic();
+
+/// What the codes of EtherCAT slaves mean, and what to do (ethercat/al_status.hpp).
+drive::Topic al_status_topic();
 
 /// Its record for scripts (docs/json.md).
 report::Record explanation_record(const Explanation& explanation);

@@ -177,6 +177,18 @@ TEST(TopicQuery, FindsWordsInTitlesBeforeThoseInTexts) {
   EXPECT_EQ(found("", inputs()), "-");
 }
 
+TEST(AlStatus, EveryCodeIsFoundInBothLanguages) {
+  const auto topic = al_status_topic();
+  EXPECT_GT(topic.rows.size(), 50U);
+  for (const auto& row : topic.rows) {
+    EXPECT_EQ(found("AL status " + row.cells[0], topic).substr(0, 4), "row ") << row.cells[0];
+    EXPECT_NE(row.text, row.text_zh) << row.cells[0];
+    EXPECT_EQ(row.text.back() == ' ' || row.text_zh.ends_with("；"), false) << row.cells[0];
+  }
+  EXPECT_EQ(found("AL status", topic), "name");
+  EXPECT_EQ(found("AL 状态码", topic), "name");
+}
+
 TEST(Explanations, AWordForFaultsLeadsToTheNumberOfADisplay) {
   drive::Profile profile;
   for (const auto* panel : {"Err-5", "Err-52", "Er52-1"}) {
