@@ -91,6 +91,11 @@ od::Value PdoField::value(ByteSpan data) const {
   return decoded ? *decoded : od::Value(raw);
 }
 
+std::int8_t PdoField::mode(ByteSpan data) const {
+  constexpr std::size_t kModeBits = 8;
+  return static_cast<std::int8_t>(bits_at(data, first_bit, std::min<std::size_t>(entry.bits, kModeBits)));
+}
+
 PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::Pdo pdo) {
   PdoView out{node, std::move(pdo), {}, {}};
   out.profile = profile;
@@ -140,10 +145,7 @@ std::int8_t mode_in(const PdoView& view, ByteSpan data) {
   for (const auto& field : view.fields) {
     if (field.entry.object != objects::kModeOfOperation && field.entry.object != objects::kModeDisplay)
       continue;
-    const auto value = field.value(data);
-    const auto* number = std::get_if<std::int64_t>(&value);
-    if (number == nullptr) return 0;
-    const auto mode = static_cast<std::int8_t>(*number);
+    const auto mode = field.mode(data);
     return view.profile == nullptr ? mode : drive::standard_mode(view.profile->rules.motion, mode);
   }
   return 0;

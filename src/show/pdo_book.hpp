@@ -28,6 +28,8 @@ struct PdoField {
 
   /// The value in a frame that is long enough.
   od::Value value(ByteSpan data) const;
+  /// Of 6060h and 6061h what they say, also where nobody knows their type.
+  std::int8_t mode(ByteSpan data) const;
 };
 
 /// A PDO of one node with all that is needed to read its frames.

@@ -158,11 +158,9 @@ void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const 
   const bool assumed = view->assumed && shows_values(*view, data);
   if (assumed) out_.text += word(" (factory mapping)");
   out_.text += ' ';
-  show::append_values(*view, data, options_.chinese, out_.text, modes_[node % modes_.size()]);
-  for (const auto& field : view->fields) {
-    out_.objects.push_back(field.entry.object);
-    if (field.entry.object == objects::kModeOfOperation) modes_[node % modes_.size()] = 0;
-  }
+  modes_.on_pdo(*view, data);
+  show::append_values(*view, data, options_.chinese, out_.text, modes_.of(node));
+  for (const auto& field : view->fields) out_.objects.push_back(field.entry.object);
   if (!options_.fields) return;
   fields_.member("pdo", view->name);
   fields_.text_or_null("mapping", assumed ? "factory" : "");
@@ -186,7 +184,7 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
     out_.service = "boot-up";
     out_.text = word("boot-up");
     pdos_.forget(*out_.node);
-    modes_[*out_.node] = 0;
+    modes_.forget(*out_.node);
     emergency_ids_.on_boot_up(*out_.node);
     return;
   }
@@ -234,7 +232,7 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   if (step.announced) out_.text += report::told(options_.chinese, ", {} bytes", *step.announced);
   if (options_.fields) end_sdo_fields(step);
   learn(step);
-  learn_mode(step);
+  modes_.on_sdo(*out_.node, step);
 }
 
 std::string FrameDecoder::abort_words_of(const SdoStep& step) const {
@@ -289,7 +287,7 @@ void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Targ
 std::string FrameDecoder::words_of(const Bytes& data, ObjectAddress object) const {
   if (data.size() != 2) return {};
   const auto word = static_cast<std::uint16_t>(load_le(data));
-  const auto mode = modes_[*out_.node];
+  const auto mode = modes_.of(*out_.node);
   const auto language = options_.chinese ? report::chinese_word : nullptr;
   if (object == objects::kStatusword) return drive::statusword_words(word, mode, language);
   return object == objects::kControlword ? drive::controlword_words(word, mode, language) : std::string();

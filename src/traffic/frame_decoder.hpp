@@ -14,6 +14,7 @@
 #include "report/json_writer.hpp"
 #include "show/desk.hpp"
 #include "show/pdo_book.hpp"
+#include "traffic/modes_seen.hpp"
 
 namespace servoctl::traffic {
 
@@ -41,7 +42,8 @@ class FrameDecoder {
     bool chinese = false;
     bool fields = true;  ///< Whether DecodedFrame::fields are wanted: they take longer than the text.
   };
-  explicit FrameDecoder(Options options) : options_(options), pdos_(options.profile, options.chinese) {}
+  explicit FrameDecoder(Options options)
+      : options_(options), pdos_(options.profile, options.chinese), modes_(options.profile) {}
   FrameDecoder(const FrameDecoder&) = delete;
   FrameDecoder& operator=(const FrameDecoder&) = delete;
 
@@ -66,7 +68,6 @@ class FrameDecoder {
   std::string abort_words_of(const canopen::SdoStep& step) const;
   void end_sdo_fields(const canopen::SdoStep& step);
   void learn(const canopen::SdoStep& step);
-  void learn_mode(const canopen::SdoStep& step);
   std::string words_of(const Bytes& data, ObjectAddress object) const;
   std::string name_of(const drive::Target& target) const;
   std::string_view word(std::string_view english) const;
@@ -85,7 +86,7 @@ class FrameDecoder {
   report::JsonWriter fields_{out_.fields};
   std::array<canopen::SdoObserver, 128> channels_;
   std::array<std::optional<Pending>, 128> pending_;
-  std::array<std::int8_t, 128> modes_{};  ///< Of CiA 402-2, as nodes told them last; 0: not known.
+  ModesSeen modes_;
 };
 
 }  // namespace servoctl::traffic

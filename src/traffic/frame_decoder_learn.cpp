@@ -1,21 +1,8 @@
 // What a FrameDecoder remembers of SDO transfers, for the frames that follow.
-#include "drive/standard_mode.hpp"
 #include "drive/standard_objects.hpp"
 #include "traffic/frame_decoder.hpp"
 
 namespace servoctl::traffic {
-
-/// A mode that was read holds until another is asked for.
-void FrameDecoder::learn_mode(const canopen::SdoStep& step) {
-  const bool shown = step.object == objects::kModeDisplay;
-  if (!step.data || step.data->size() != 1 || (!shown && step.object != objects::kModeOfOperation)) return;
-  const auto mode = static_cast<std::int8_t>(step.data->front());
-  auto& place = modes_[*out_.node];
-  if (step.from_client)
-    place = 0;
-  else if (shown)
-    place = options_.profile == nullptr ? mode : drive::standard_mode(options_.profile->rules.motion, mode);
-}
 
 /// A value that was read holds; one that was written holds when the node has taken it.
 void FrameDecoder::learn(const canopen::SdoStep& step) {

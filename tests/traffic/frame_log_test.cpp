@@ -178,5 +178,58 @@ TEST(FrameLog, FindsEmergenciesUnderThe1014hThatWasReadOrWritten) {
       "EMCY 0x8210");
 }
 
+/// The last frame of these, behind what maps 6060h into RPDO1 and 6061h into TPDO1.
+std::string last_of_mapped(std::vector<std::string_view> frames) {
+  std::vector<std::string_view> all{"601#2F00160000000000", "581#6000160000000000", "601#2300160108006060",
+                                    "581#6000160100000000", "601#2F00160001000000", "581#6000160000000000",
+                                    "601#2F001A0000000000", "581#60001A0000000000", "601#23001A0108006160",
+                                    "581#60001A0100000000", "601#2F001A0001000000", "581#60001A0000000000"};
+  all.insert(all.end(), frames.begin(), frames.end());
+  FrameDecoder decoder({});
+  std::string out;
+  for (const auto text : all) out = decoder.decode(*can::parse_frame(text)).text;
+  return out;
+}
+
+constexpr std::string_view kHomingAttained = "homing attained";
+constexpr std::string_view kAcknowledged = "set-point acknowledge";
+
+/// What bit 12 of a statusword that is read behind these frames is called.
+std::string bit_12_behind(std::vector<std::string_view> frames) {
+  frames.insert(frames.end(), {"601#4041600000000000", "581#4B41600037160000"});
+  const auto text = last_of_mapped(frames);
+  for (const auto word : {kHomingAttained, kAcknowledged, std::string_view("bit 12")})
+    if (text.find(word) != std::string::npos) return std::string(word);
+  return text;
+}
+
+TEST(FrameLog, TakesTheModeFrom6060hUntil6061hTellsIt) {
+  constexpr std::string_view kAsks6 = "601#2F60600006000000";
+  constexpr std::string_view kTaken = "581#6060600000000000";
+  constexpr std::string_view kReads = "601#4061600000000000";
+  constexpr std::string_view kIs1 = "581#4F61600001000000";
+  EXPECT_EQ(bit_12_behind({}), "bit 12");
+  EXPECT_EQ(bit_12_behind({kAsks6, kTaken}), kHomingAttained);
+  EXPECT_EQ(bit_12_behind({kAsks6}), "bit 12") << "nobody took it yet";
+  EXPECT_EQ(bit_12_behind({kAsks6, "581#8060600000000206"}), "bit 12") << "it was refused";
+  EXPECT_EQ(bit_12_behind({kAsks6, "581#8060600000000206", "601#2B60600001000000", kTaken}), "bit 12")
+      << "what was taken is no mode";
+  EXPECT_EQ(bit_12_behind({kReads, kIs1, kAsks6, "581#8060600000000206"}), kAcknowledged)
+      << "the one before goes on";
+  EXPECT_EQ(bit_12_behind({kReads, kIs1, kAsks6, kTaken}), kHomingAttained) << "it was written since";
+  EXPECT_EQ(bit_12_behind({kAsks6, kTaken, kReads, kIs1}), kAcknowledged) << "what 6061h says wins";
+  EXPECT_EQ(bit_12_behind({kAsks6, kTaken, "701#00"}), "bit 12") << "it started anew";
+}
+
+TEST(FrameLog, TakesTheModeFromPdosThatCarryIt) {
+  EXPECT_EQ(bit_12_behind({"201#06"}), kHomingAttained);
+  EXPECT_EQ(bit_12_behind({"181#01"}), kAcknowledged);
+  EXPECT_EQ(bit_12_behind({"181#01", "201#06"}), kHomingAttained);
+  EXPECT_EQ(bit_12_behind({"201#06", "181#01"}), kAcknowledged);
+  EXPECT_EQ(bit_12_behind({"201#06", "181#01", "201#06"}), kAcknowledged) << "it is the same request";
+  EXPECT_EQ(bit_12_behind({"201#06", "181#01", "201#01", "201#06"}), kHomingAttained);
+  EXPECT_EQ(bit_12_behind({"201#"}), "bit 12") << "shorter than its mapping";
+}
+
 }  // namespace
 }  // namespace servoctl::traffic
