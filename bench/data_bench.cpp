@@ -88,5 +88,19 @@ void offer_each_of_5000(benchmark::State& state) {
 }
 BENCHMARK(offer_each_of_5000)->Unit(benchmark::kMillisecond);
 
+/// The same behind `explain`, which takes the names of topics as well.
+void offer_what_is_explained(benchmark::State& state) {
+  const auto file = std::filesystem::temp_directory_path() / "servoctl-bench.eds";
+  (void)write_file_atomically(file, large_eds(5000));
+  cli::StandardConsole console;
+  cli::Shell::Options options;
+  options.drive_folders = {std::filesystem::path(SERVOCTL_SOURCE_DIR) / "eds"};
+  cli::Shell shell(console, options);
+  shell.defaults().drive = file.string();
+  for (auto _ : state) benchmark::DoNotOptimize(cli::complete("explain ", shell));
+  std::filesystem::remove(file);
+}
+BENCHMARK(offer_what_is_explained)->Unit(benchmark::kMillisecond);
+
 }  // namespace
 }  // namespace servoctl

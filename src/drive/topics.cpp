@@ -19,10 +19,13 @@ std::string family_of_file(const fs::path& path) {
   return lower(name.substr(0, name.size() - kTopicFile.size()));
 }
 
-Result<std::vector<Topic>> read_topic_file(const fs::path& path) {
+using Parse = Result<std::vector<Topic>>(std::string_view toml, std::string_view file,
+                                         std::string_view family);
+
+Result<std::vector<Topic>> read_topic_file(const fs::path& path, Parse& parse = parse_topics) {
   const auto text = read_file(path);
   if (!text) return fail(text.error());
-  return parse_topics(*text, path.string(), family_of_file(path));
+  return parse(*text, path.string(), family_of_file(path));
 }
 
 bool says_the_same(const Topic& a, const Topic& b) {
@@ -54,6 +57,21 @@ std::optional<fs::path> standard_file(std::span<const fs::path> folders) {
   return std::nullopt;
 }
 
+/// Of the family, its parents and the standard.
+Result<std::vector<Topic>> read_all(const Profile& profile, std::span<const fs::path> folders, Parse& parse) {
+  auto files = profile.topic_files;
+  if (const auto standard = standard_file(folders);
+      standard && std::find(files.begin(), files.end(), *standard) == files.end())
+    files.push_back(*standard);
+  std::vector<Topic> out;
+  for (const auto& file : files) {
+    auto topics = read_topic_file(file, parse);
+    if (!topics) return fail(topics.error());
+    add_behind(out, std::move(*topics));
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<std::vector<Topic>> load_own_topics(const Profile& profile) {
@@ -63,16 +81,14 @@ Result<std::vector<Topic>> load_own_topics(const Profile& profile) {
 }
 
 Result<std::vector<Topic>> load_topics(const Profile& profile, std::span<const fs::path> folders) {
-  auto files = profile.topic_files;
-  if (const auto standard = standard_file(folders);
-      standard && std::find(files.begin(), files.end(), *standard) == files.end())
-    files.push_back(*standard);
-  std::vector<Topic> out;
-  for (const auto& file : files) {
-    auto topics = read_topic_file(file);
-    if (!topics) return fail(topics.error());
-    add_behind(out, std::move(*topics));
-  }
+  return read_all(profile, folders, parse_topics);
+}
+
+Result<std::vector<std::string>> topic_names(const Profile& profile, std::span<const fs::path> folders) {
+  auto heads = read_all(profile, folders, parse_topic_heads);
+  if (!heads) return fail(heads.error());
+  std::vector<std::string> out;
+  for (auto& head : *heads) out.push_back(std::move(head.name));
   return out;
 }
 

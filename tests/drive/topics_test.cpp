@@ -112,6 +112,44 @@ TEST(Topics, OfTheStandardHoldForAFamilyWithoutAParentAndForFiles) {
   }
 }
 
+std::vector<std::string> heads(const std::string& toml) {
+  std::vector<std::string> out;
+  const auto topics = parse_topic_heads(toml, "f.topics.toml", "f");
+  if (!topics) return {topics.error().message};
+  for (const auto& topic : *topics)
+    out.push_back(topic.kind + " " + topic.name + (topic.picture.empty() ? "" : " with a picture"));
+  return out;
+}
+
+TEST(TopicNames, AreThoseOfTheTopicsInEveryFamily) {
+  const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
+  for (const auto* family : {"cia402", "gsd600", "dm", "da200", "sv2", "ts"}) {
+    const auto profile = load_profile(family, folders);
+    ASSERT_TRUE(profile) << profile.error().message;
+    std::vector<std::string> whole;
+    const auto topics = load_topics(*profile, folders);
+    for (const auto& topic : *topics) whole.push_back(topic.name);
+    EXPECT_EQ(topic_names(*profile, folders).value(), whole) << family;
+  }
+  const auto profile = load_profile("x1", kTopicFolders);
+  EXPECT_EQ(topic_names(*profile, kTopicFolders).value().at(1), "method 7 of x1");
+  EXPECT_EQ(topic_names(*profile, kTopicFolders).value().at(4), "homing method 7") << "only it has a picture";
+}
+
+TEST(TopicNames, AreFoundByTheirLinesAndElseInTheWholeFile) {
+  const std::vector<std::string> run{"led RUN"};
+  EXPECT_EQ(heads(kWhole + "text = \"not read any further\"\n"), run);
+  EXPECT_EQ(heads(kWhole + kTexts + "picture = \"\"\"\n |\n\"\"\"\n"),
+            (std::vector<std::string>{"led RUN with a picture"}));
+  EXPECT_EQ(heads(kWhole + kTexts + "[words_zh]\nname = \"名称\"\n"), run);
+  EXPECT_EQ(heads(kWhole + "text = \"\"\"\nname = \"other\"\n\"\"\"\ntext_zh = \"z\"\n"), run);
+  const auto indented = "format = 1\n[[topic]]\nkind = \"led\"\n name = \"RUN\"" +
+                        kWhole.substr(kWhole.find("\ntitle")) + kTexts;
+  EXPECT_EQ(heads(indented), run);
+  EXPECT_EQ(heads(kHead + "kind = \"led\"\n"),
+            (std::vector<std::string>{"f.topics.toml:2:1: 'name' is missing"}));
+}
+
 TEST(Topics, AreNoFamilyAndAreReadByNobodyElse) {
   std::vector<std::string> found;
   for (const auto& family : find_families(kTopicFolders)) found.push_back(family.name);

@@ -11,6 +11,7 @@
 #include "command/registry.hpp"
 #include "drive/topics.hpp"
 #include "report/catalogue.hpp"
+#include "show/explanation.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -158,10 +159,11 @@ void Candidates::add_kind(const command::Command* command, const command::Parame
 void Candidates::add_topics(const std::vector<std::string>& before) {
   const drive::Profile none;
   const auto* known = profile();
-  const auto topics = drive::load_topics(known == nullptr ? none : *known, shell_->drive_folders());
+  auto topics = drive::topic_names(known == nullptr ? none : *known, shell_->drive_folders());
   if (!topics) return;
+  for (const auto name : {show::kExitCodes, show::kAlStatusCodes}) topics->emplace_back(name);
   for (const auto& topic : *topics) {
-    const auto words = split(std::string_view(topic.name), ' ');
+    const auto words = split(std::string_view(topic), ' ');
     if (words.size() > before.size() &&
         std::equal(before.begin(), before.end(), words.begin(),
                    [](const std::string& a, std::string_view b) { return equals_nocase(a, b); }))
