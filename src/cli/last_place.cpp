@@ -132,7 +132,11 @@ void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   const bool told = !now.bus.empty() || !now.nodes.empty() || !now.drive.empty();
   if (told || state_folder.empty()) return;
   const auto last = LastPlaceFile(state_folder).read();
-  if (!last) return tell(shell, last.error().message + "; " + last.error().hint);
+  if (!last) {
+    auto text = last.error().message;
+    if (!last.error().hint.empty()) append(text, last.error().hint, "; ");
+    return tell(shell, text);
+  }
   if (!*last || ((*last)->bus.empty() && (*last)->nodes.empty())) return;
   const auto& place = **last;
   // Who names a cabinet file wants to be there.

@@ -102,6 +102,42 @@ def last_place(state):
     expect("exit code after a damaged file", 0, t.exit_code())
 
 
+def last_place_in_chinese(state):
+    """The notice at the start, and why the prompt is not where it was."""
+    here = os.path.join(state, "chinese")
+    os.mkdir(here)
+    cabinet = os.path.join(os.path.realpath(here), "cabinet.toml")
+    with open(cabinet, "w", encoding="utf-8") as out:
+        out.write(f'[bus.main]\nurl = "{cell}"\n[axis.lift]\nbus = "main"\nnode = 1\nfamily = "gsd600"\n')
+    adapter = "slcan:/dev/nowhere@500k"
+    time_then = "2026-01-01T00:00:00Z"
+    there = f"提示：沿用上次（{time_then}）的位置："
+    changes = "；可用 `bus`、`use` 和 `drive` 改变"
+    not_there = "提示：未沿用上次的位置"
+    go_on = "；用 `bus` 和 `use` 指定去向"
+    in_cabinet = {"bus": "main", "nodes": "lift", "drive": "", "cabinet": cabinet}
+    file = os.path.join(state, "servoctl", "prompt.json")
+    os.makedirs(os.path.dirname(file), exist_ok=True)
+    at = os.getcwd()
+    for folder, place, told, prompt in (
+            (at, {"bus": cell, "nodes": "2", "drive": "gsd600"}, f"{there}总线 {cell}，节点 2，驱动器系列 gsd600{changes}", f"servoctl {cell} 节点 2 gsd600"),
+            (at, {"bus": adapter, "nodes": "1"}, f"{there}总线 {adapter}，节点 1{changes}；第一条需要总线的行将打开它", f"servoctl {adapter} 节点 1"),
+            (at, in_cabinet, f"{not_there}（lift，控制柜 {cabinet}）：此处没有使用控制柜文件{go_on}", "servoctl"),
+            (here, in_cabinet, f"{there}lift，控制柜 {cabinet}{changes}", "servoctl main lift gsd600"),
+            (here, {**in_cabinet, "cabinet": "/elsewhere/cabinet.toml"}, f"{not_there}（lift，控制柜 /elsewhere/cabinet.toml）：控制柜文件不是上次那个{go_on}", "servoctl"),
+            (at, None, f"提示：{file}:1：不是 JSON，或不完整", "servoctl")):
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(json.dumps({"servoctl_prompt": 1, "time": time_then, **place}) if place else "{")
+        os.chdir(folder)
+        try:
+            t = Terminal(servoctl, "--lang", "zh", state=state)
+            t.see("^" + re.escape(told) + r"\r\n[^\n]*" + re.escape(prompt) + "> ")
+            t.type("\x04")
+            expect(f"exit code behind '{told}'", 0, t.exit_code())
+        finally:
+            os.chdir(at)
+
+
 def place_in_a_cabinet(state):
     """Names of a cabinet file are taken where that file is in use, and nowhere else."""
     here = os.path.join(state, "here")
@@ -346,7 +382,7 @@ try:
             break
         time.sleep(0.05)
     words_of_the_prompt()
-    for part in (last_place, place_in_a_cabinet, undo, mistyped_bus, log, full_disk):
+    for part in (last_place, last_place_in_chinese, place_in_a_cabinet, undo, mistyped_bus, log, full_disk):
         with tempfile.TemporaryDirectory() as folder:
             part(folder)
 finally:
