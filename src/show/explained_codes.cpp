@@ -81,7 +81,7 @@ drive::Topic exit_code_topic() {
 }
 
 drive::Topic al_status_topic() {
-  constexpr std::string_view kTitle = "AL status codes: why a slave refused or left a state";
+  constexpr std::string_view kTitle = "Why a slave of EtherCAT refused or left a state";
   constexpr std::string_view kText =
       "A slave of EtherCAT tells the code in its register 0134h, beside the state it is in (0130h). `scan` shows "
       "both, and what to do. Codes from 8000h on are the vendor's own.";

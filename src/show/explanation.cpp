@@ -137,7 +137,7 @@ std::vector<Explanation> explanations(const TopicQuery& query, std::span<const L
                                       bool chinese) {
   auto out = explained(query, libraries, chinese);
   const auto led = without_lead(query.whole());
-  if (!led || (!out.empty() && out.front().found < Found::title)) return out;
+  if (!led || (!out.empty() && out.front().found < Found::row)) return out;
   auto behind = explained(TopicQuery(led->rest), libraries, chinese);
   std::erase_if(behind, [&](const Explanation& each) { return each.found != led->found; });
   if (behind.empty() && led->found == Found::fault)

@@ -209,6 +209,21 @@ TEST(Explanations, AWordForFaultsLeadsToTheNumberOfADisplay) {
   EXPECT_EQ(names("fault 52", true), "") << "nobody named the family";
 }
 
+TEST(Explanations, AFaultThatIsLedToStandsBeforeARowOfItsCode) {
+  drive::Profile profile;
+  drive::Fault fault;
+  fault.code = 0x8130;
+  profile.faults.push_back(fault);
+  auto classes = inputs();
+  classes.name = "EMCY codes";
+  classes.rows = {{{"8130h", "-"}, "", "", "1"}};
+  const Library library{&profile, {classes}, false};
+  const auto all = explanations(TopicQuery("emcy 0x8130"), {&library, 1}, false);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0].found, Found::fault);
+  EXPECT_EQ(all[1].found, Found::row);
+}
+
 TEST(ExitCodes, TellEveryErrorOnce) {
   const auto topic = exit_code_topic();
   std::vector<std::string> told;
