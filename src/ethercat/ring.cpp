@@ -20,9 +20,7 @@ bool address_returns(Command command) {
 }
 
 /// One slave does it, or nobody: any other counter than 0 is whole.
-bool is_for_one(Command command) {
-  return command >= Command::aprd && command <= Command::fprw;
-}
+bool is_for_one(Command command) { return command >= Command::aprd && command <= Command::fprw; }
 
 }  // namespace
 
