@@ -76,6 +76,16 @@ TEST_F(Completing, OffersWhatAValueMayBe) {
   EXPECT_TRUE(offers_word("param set Pn0214 40", "40Hz"));
 }
 
+TEST_F(Completing, OffersTheWordsOfNamesThatAreExplained) {
+  EXPECT_TRUE(offers_word("explain COMM", "COMM1/COMM2"));
+  EXPECT_TRUE(offers_word("explain statusw", "statusword"));
+  EXPECT_TRUE(offers_word("explain homing m", "method"));
+  EXPECT_TRUE(offers_word("explain homing method ", "17"));
+  EXPECT_TRUE(offers_word("explain AL s", "status"));
+  EXPECT_TRUE(offers_word("explain exit ", "codes"));
+  EXPECT_FALSE(offers_word("explain CN", "CN3")) << "it is of another family";
+}
+
 TEST_F(Completing, OffersEachMethodByItsNumberThoughSeveralHaveOneName) {
   for (const bool chinese : {false, true}) {
     shell.defaults().chinese = chinese;

@@ -95,7 +95,8 @@ TEST(Completer, OffersTopicsWordByWord) {
   Shell::Options options;
   options.drive_folders = {std::filesystem::path(source_dir()) / "tests/cli/data/explain"};
   Shell shell(console, std::move(options));
-  EXPECT_EQ(offered_words("explain ", shell), (std::vector<std::string>{"pp", "homing", "cable"}));
+  EXPECT_EQ(offered_words("explain ", shell),
+            (std::vector<std::string>{"pp", "homing", "cable", "exit", "AL"}));
   EXPECT_EQ(offered_words("explain Homing ", shell), std::vector<std::string>{"method"});
   EXPECT_EQ(offered_words("explain -d x1 DI ", shell), std::vector<std::string>{"functions"});
   EXPECT_EQ(offered_words("explain -d x1 c", shell), (std::vector<std::string>{"CN3", "cable"}));
