@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 #include <array>
 
+#include "base/base64.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "base/base64.hpp"
 #include "gateway/words.hpp"
 #include "od/value.hpp"
 

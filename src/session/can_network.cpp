@@ -101,10 +101,8 @@ Result<bool> CanNetwork::step(TimePoint deadline) {
   watch_.on_time(stepped_at_);
   guard_.on_time(stepped_at_);
   if (!frame_) return false;
-  if (is_message) {
-    dispatch(*frame_);
-    return true;
-  }
+  if (is_message) dispatch(*frame_);
+  if (is_message) return true;
   if (const auto error = can::parse_wire_error(*frame_)) {
     wire_errors_.add(*error);
     wire_error_at_ = stepped_at_;
@@ -115,13 +113,11 @@ Result<bool> CanNetwork::step(TimePoint deadline) {
 }
 
 Result<void> CanNetwork::recover(TimePoint deadline) {
-  auto back = bus_->recover(deadline);
-  if (!back) return back;
+  if (auto back = bus_->recover(deadline); !back) return back;
   watch_.on_gap(now());
-  // Whoever is there now may have others, or be another.
-  pdos_.clear();
+  pdos_.clear();  // Whoever is there now may have others, or be another.
   lss_selection_.reset();
-  return back;
+  return {};
 }
 
 void CanNetwork::hear(const can::Frame& frame) {
