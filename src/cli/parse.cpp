@@ -116,16 +116,42 @@ class LineParser {
   Result<void> take_words(std::vector<std::string> words) {
     app_.clear();
     for (auto& entry : bound_) entry.values.clear();
+    if (const auto whole = each_has_its_value(words); !whole) return whole;
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back.
     try {
       app_.parse(std::move(words));
-    } catch (const CLI::ArgumentMismatch& e) {
-      return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
     } catch (const CLI::ParseError& e) {
       return fail(Errc::usage, fmt::format("{}: {}", command_->path, e.what()), help_hint());
     }
     if (const auto rest = app_.remaining(); !rest.empty()) return superfluous(rest.front());
     take_results();
+    return {};
+  }
+
+  const Parameter* option_named(std::string_view name) const {
+    for (const auto& [parameter, option, values] : bound_)
+      if (name.starts_with('-') && (parameter->name == name || parameter->short_name == name))
+        return parameter;
+    return nullptr;
+  }
+
+  /// Refuses an option whose value is missing, where the line ends or another option follows, and a switch
+  /// with one: `--yes=no` would be a yes. `--to=--json` takes what looks like an option.
+  Result<void> each_has_its_value(const std::vector<std::string>& words) const {
+    for (std::size_t i = 0; i < words.size(); ++i) {
+      const auto equals = words[i].find('=');
+      const auto* option = option_named(std::string_view(words[i]).substr(0, equals));
+      if (option == nullptr) continue;
+      const bool has_value = equals != std::string::npos;
+      if (option->kind == Kind::flag && has_value)
+        return fail(Errc::usage, fmt::format("{}: {} takes no value", command_->path, option->name),
+                    help_hint());
+      if (option->kind == Kind::flag || has_value) continue;
+      if (i + 1 == words.size() || option_named(words[i + 1]) != nullptr)
+        return fail(Errc::usage, fmt::format("{}: {} needs a value", command_->path, option->name),
+                    fmt::format("{}: {}; {}", option->name, option->help, help_hint()));
+      ++i;
+    }
     return {};
   }
 

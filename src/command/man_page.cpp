@@ -88,7 +88,7 @@ std::string description() {
          ".PP\n" +
          roff_text(
              "What stores all values, restores, resets or moves is asked for on a terminal and needs `--yes` elsewhere. What "
-             "stands behind `--` is a value, whatever it looks like: `write 0x2000 -- -5`.") +
+             "stands behind `--` is a value, whatever it looks like: `write 607Ch -- -5`.") +
          ".PP\n" +
          roff_text(
              "This page is made from the tables by which the program reads its command line. `servoctl help COMMAND` "

@@ -32,7 +32,7 @@ constexpr std::string_view kPower = "power cycle the drive";
 
 constexpr std::array kRows{
     Row{0x0000, "no error", ""},
-    Row{0x0001, "unspecified error", "check the drive's own fault with `fault`"},
+    Row{0x0001, "unspecified error", "check the drive's own fault with `fault show`"},
     Row{0x0002, "out of memory", kPower},
     Row{0x0003, "invalid device setup", "the modules or options of the drive do not match its settings"},
     Row{0x0004, "invalid revision", "its firmware does not match its hardware"},
@@ -47,7 +47,8 @@ constexpr std::array kRows{
     Row{0x0015, "invalid mailbox settings for the bootstrap state", kMailbox},
     Row{0x0016, "invalid mailbox settings for PRE-OP", kMailbox},
     Row{0x0017, "invalid sync manager settings", kLengths},
-    Row{0x0018, "no valid inputs", "the drive cannot provide its values: check its own fault with `fault`"},
+    Row{0x0018, "no valid inputs",
+        "the drive cannot provide its values: check its own fault with `fault show`"},
     Row{0x0019, "no valid outputs", kFrames},
     Row{0x001A, "synchronisation error", kDc},
     Row{0x001B, "sync manager watchdog: no outputs received in time", kFrames},
@@ -100,7 +101,6 @@ constexpr std::array kRows{
     Row{0x0083, "temperature too high", "let it cool down and check its fan"},
     Row{0x00F0, "application controller available", ""},
 };
-constexpr std::uint16_t kFirstOfVendor = 0x8000;
 
 const Row* find(std::uint16_t code) {
   const auto row = std::find_if(kRows.begin(), kRows.end(), [&](const Row& r) { return r.code == code; });

@@ -27,8 +27,11 @@ struct AlStatus {
 /// Takes the 6 bytes from 0130h on apart; fewer are none.
 AlStatus parse_al_status(ByteSpan registers);
 
+/// AL status codes from here on are the vendor's own (ETG.1000.6, table 11).
+constexpr std::uint16_t kFirstOfVendor = 0x8000;
+
 /// What an AL status code (0134h) says, in plain words (ETG.1000.6, table 11; ETG.1020, 5.7): a phrase
-/// without a full stop. Codes from 8000h on are the vendor's.
+/// without a full stop.
 std::string al_status_text(std::uint16_t code);
 /// What to do about it; empty when the code leaves nothing to say.
 std::string al_status_hint(std::uint16_t code);

@@ -84,7 +84,7 @@ drive::Topic al_status_topic() {
   constexpr std::string_view kTitle = "Why a slave of EtherCAT refused or left a state";
   constexpr std::string_view kText =
       "A slave of EtherCAT tells the code in its register 0134h, beside the state it is in (0130h). `scan` shows "
-      "both, and what to do. Codes from 8000h on are the vendor's own.";
+      "both, and what to do.";
   constexpr std::string_view kCode = "code";
   auto out = topic_heading(drive::kStandardFamily, "state", std::string(kAlStatusCodes), std::string(kTitle),
                            chinese_of(kTitle));
@@ -95,16 +95,18 @@ drive::Topic al_status_topic() {
   out.columns = {std::string(kCode)};
   out.columns_zh = {chinese_of(kCode)};
   out.line = "ETG.1000.6, table 11; ETG.1020, 5.7";
-  for (const auto code : ethercat::al_status_codes()) {
-    auto text = ethercat::al_status_text(code);
+  const auto row = [&](std::string cell, std::uint16_t status) {
+    auto text = ethercat::al_status_text(status);
     auto text_zh = chinese_of(text);
-    const auto hint = ethercat::al_status_hint(code);
+    const auto hint = ethercat::al_status_hint(status);
     if (!hint.empty()) {
       append(text, hint, "; ");
       append(text_zh, chinese_of(hint), "；");
     }
-    out.rows.push_back({{fmt::format("0x{:04X}", code)}, std::move(text), std::move(text_zh), {}});
-  }
+    out.rows.push_back({{std::move(cell)}, std::move(text), std::move(text_zh), {}});
+  };
+  for (const auto status : ethercat::al_status_codes()) row(fmt::format("0x{:04X}", status), status);
+  row(fmt::format("0x{:04X}-0xFFFF", ethercat::kFirstOfVendor), ethercat::kFirstOfVendor);
   return out;
 }
 

@@ -69,6 +69,27 @@ TEST(ParseLine, TakesEveryWordBehindTwoDashesAsAValue) {
   EXPECT_EQ(parse_line({"write", "a", "{}"})->arguments.text("value"), "{}");
 }
 
+TEST(ParseLine, RefusesAnOptionWithoutItsValueAndASwitchWithOne) {
+  const std::pair<Words, std::string> lines[] = {
+      {{"backup", "a.json", "--format"}, "backup: --format needs a value"},
+      {{"read", "0x6041", "--to", "--json"}, "read: --to needs a value"},
+      {{"read", "0x6041", "-n", "-b", "can0"}, "read: --node needs a value"},
+      {{"report", "a.html", "--tests", "--title", "Press"}, "report: --tests needs a value"},
+      {{"jog", "30rpm", "--yes=no"}, "jog: --yes takes no value"},
+      {{"restore", "a.json", "--dry-run=false"}, "restore: --dry-run takes no value"},
+      {{"scan", "-y=0"}, "scan: --yes takes no value"}};
+  for (const auto& [words, said] : lines) {
+    const auto line = parse_line(words);
+    ASSERT_FALSE(line) << said;
+    EXPECT_EQ(line.error().message, said);
+  }
+  EXPECT_EQ(parse_line({"backup", "a.json", "--format"}).error().hint.substr(0, 10), "--format: ");
+  const auto line = parse_line({"read", "0x6041", "--to=--json", "--timeout", "-5"});
+  ASSERT_TRUE(line) << line.error().message;
+  EXPECT_EQ(line->arguments.text("--to"), "--json");
+  EXPECT_EQ(line->arguments.text("--timeout"), "-5");
+}
+
 TEST(ParseLine, TakesOptionsBehindTwoDashesWhenEveryArgumentHasItsValue) {
   const auto line = parse_line({"jog", "--", "-30rpm", "--for", "2s", "-n", "1"});
   ASSERT_TRUE(line) << line.error().message;
