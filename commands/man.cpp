@@ -7,8 +7,8 @@ namespace {
 
 using namespace command;
 
-Result<report::Value> run_man(Context&, const Arguments&) {
-  auto page = man_page(version(), version_date());
+Result<report::Value> run_man(Context& context, const Arguments&) {
+  auto page = man_page(version(), version_date(), context.chinese);
   page.pop_back();  // The front end ends the text with a line break.
   return report::Value(std::move(page));
 }
@@ -27,7 +27,7 @@ const Command kMan{
     .details =
         "As a command of its own on a terminal it is shown by `man -l -`, with the pager of that. At the prompt, "
         "in a pipe, with --no-pager, or without a program `man` it is the source. An installed servoctl includes "
-        "it: `man servoctl`. It is in English, with `--lang zh` as well.",
+        "it: `man servoctl`. With `--lang zh` it is in Chinese.",
     .parameters = {},
     .examples = kManExamples,
     .needs = Needs::nothing,

@@ -1,12 +1,14 @@
 # What is installed: `cmake --install`, the .deb and the tarball have the same files, at the same places below their prefix.
 set(install_folder ${CMAKE_BINARY_DIR}/install)
 
-# The program writes its own page, without a home to keep anything in.
-add_custom_command(OUTPUT ${install_folder}/servoctl.1.gz
-  COMMAND ${CMAKE_COMMAND} -E make_directory ${install_folder}
-  COMMAND ${CMAKE_COMMAND} -E env --unset=HOME --unset=XDG_STATE_HOME
-          sh -c "\"$0\" man >\"$1\" && gzip -9nf \"$1\"" $<TARGET_FILE:servoctl> ${install_folder}/servoctl.1
-  DEPENDS servoctl VERBATIM)
+# The program writes its own page in its languages, without a home to keep anything in.
+foreach(lang en zh)
+  add_custom_command(OUTPUT ${install_folder}/${lang}/servoctl.1.gz
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${install_folder}/${lang}
+    COMMAND ${CMAKE_COMMAND} -E env --unset=HOME --unset=XDG_STATE_HOME
+            sh -c "\"$0\" man --lang \"$2\" >\"$1\" && gzip -9nf \"$1\"" $<TARGET_FILE:servoctl> ${install_folder}/${lang}/servoctl.1 ${lang}
+    DEPENDS servoctl VERBATIM)
+endforeach()
 
 # Debian packages whose code is in the program: headers in any, archives in the one that is shipped.
 set(linked_packages libcli11-dev,nlohmann-json3-dev,libexpected-dev,libtomlplusplus-dev,libfmt-dev)
@@ -20,7 +22,7 @@ add_custom_command(OUTPUT ${install_folder}/copyright
 add_custom_command(OUTPUT ${install_folder}/changelog.gz
   COMMAND sh -c "gzip -9nc \"$0\" >\"$1\"" ${CMAKE_SOURCE_DIR}/CHANGELOG.md ${install_folder}/changelog.gz
   DEPENDS ${CMAKE_SOURCE_DIR}/CHANGELOG.md VERBATIM)
-add_custom_target(installed_files ALL DEPENDS ${install_folder}/servoctl.1.gz ${install_folder}/copyright ${install_folder}/changelog.gz)
+add_custom_target(installed_files ALL DEPENDS ${install_folder}/en/servoctl.1.gz ${install_folder}/zh/servoctl.1.gz ${install_folder}/copyright ${install_folder}/changelog.gz)
 
 install(TARGETS servoctl)
 install(DIRECTORY eds/ DESTINATION ${CMAKE_INSTALL_DATADIR}/servoctl/eds)
@@ -28,7 +30,8 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples USE_SOURCE_PERMISSIONS)
 install(FILES README.md README.zh.md ${install_folder}/copyright ${install_folder}/changelog.gz DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY ${install_folder}/licenses DESTINATION ${CMAKE_INSTALL_DOCDIR})
-install(FILES ${install_folder}/servoctl.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${install_folder}/en/servoctl.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${install_folder}/zh/servoctl.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/zh_CN/man1)
 install(FILES completions/servoctl.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME servoctl)
 install(FILES completions/_servoctl DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
 install(FILES completions/servoctl.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)

@@ -24,29 +24,6 @@ bool has(std::u32string_view marks, const CodePoint& c) {
   return c.value && marks.find(*c.value) != std::u32string_view::npos;
 }
 
-/// A word without blanks in pieces between which a line may be broken: beside wide characters, which have no
-/// blanks between words; not within Latin words, and not in backticks.
-std::vector<std::string_view> unbroken_pieces(std::string_view word) {
-  std::vector<std::string_view> out;
-  std::size_t begin = 0;
-  std::size_t at = 0;
-  CodePoint last{};
-  bool code = false;
-  while (at < word.size()) {
-    const auto c = decode_utf8(word.substr(at));
-    const bool wide = columns_of(c) == 2 || columns_of(last) == 2;
-    if (at > begin && wide && !code && !has(kNotFirst, c) && !has(kNotLast, last)) {
-      out.push_back(word.substr(begin, at - begin));
-      begin = at;
-    }
-    if (word[at] == '`') code = !code;
-    last = c;
-    at += c.size;
-  }
-  out.push_back(word.substr(begin));
-  return out;
-}
-
 /// The line in words. What stands in backticks is typed as it is read: it is one, where there is room for it.
 std::vector<std::string_view> words_of(std::string_view line, std::size_t room) {
   std::vector<std::string_view> out;
@@ -92,6 +69,13 @@ std::string wrapped_line(std::string_view line, std::size_t indent, std::size_t 
 std::string lower(std::string_view text) {
   std::string out(text);
   std::transform(out.begin(), out.end(), out.begin(), lower_char);
+  return out;
+}
+
+std::string upper(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
   return out;
 }
 
@@ -160,6 +144,27 @@ std::string clip(std::string_view text, std::size_t width) {
     at += c.size;
   }
   return std::string(text.substr(0, at)) + "…";
+}
+
+std::vector<std::string_view> unbroken_pieces(std::string_view word) {
+  std::vector<std::string_view> out;
+  std::size_t begin = 0;
+  std::size_t at = 0;
+  CodePoint last{};
+  bool code = false;
+  while (at < word.size()) {
+    const auto c = decode_utf8(word.substr(at));
+    const bool wide = columns_of(c) == 2 || columns_of(last) == 2;
+    if (at > begin && wide && !code && !has(kNotFirst, c) && !has(kNotLast, last)) {
+      out.push_back(word.substr(begin, at - begin));
+      begin = at;
+    }
+    if (word[at] == '`') code = !code;
+    last = c;
+    at += c.size;
+  }
+  out.push_back(word.substr(begin));
+  return out;
 }
 
 std::string wrapped(std::string_view text, std::size_t indent, std::size_t width) {

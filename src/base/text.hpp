@@ -10,6 +10,7 @@ namespace servoctl {
 
 /// ASCII letters in lower case; other bytes unchanged.
 std::string lower(std::string_view text);
+std::string upper(std::string_view text);
 bool equals_nocase(std::string_view a, std::string_view b);
 bool starts_with_nocase(std::string_view text, std::string_view prefix);
 
@@ -34,6 +35,10 @@ std::string pad_left(std::string_view text, std::size_t width);
 
 /// At most `width` columns of `text`; where something is cut, the last column is `…`.
 std::string clip(std::string_view text, std::size_t width);
+
+/// A word without blanks in pieces between which a line may be broken: beside wide characters, which have no
+/// blanks between words; not within Latin words, not before a mark such as `，`, not in backticks.
+std::vector<std::string_view> unbroken_pieces(std::string_view word);
 
 /// `text` broken at spaces, and beside East Asian wide characters, so that no line is wider than `width`
 /// columns (0: not broken); lines that this makes are indented. None begins with a mark such as `，` or `）`,

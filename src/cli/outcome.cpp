@@ -38,10 +38,11 @@ std::string errors_text(std::span<const Error> errors, bool told) {
   return out;
 }
 
-/// Help is in the language of who reads already.
+/// Help and the manual page are in the language of who reads already.
 Value shown(const Outcome& outcome) {
-  const bool english = !outcome.settings.shows_chinese() || outcome.command == "help";
-  return english ? outcome.result : report::chinese_value(outcome.result, &outcome.names);
+  const bool done =
+      !outcome.settings.shows_chinese() || outcome.command == "help" || outcome.command == "man";
+  return done ? outcome.result : report::chinese_value(outcome.result, &outcome.names);
 }
 
 report::Record envelope(const Outcome& outcome) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <map>
 #include "cli/cli11.hpp"
@@ -52,11 +51,7 @@ std::size_t first_plain_word(const std::vector<std::string>& words) {
 
 /// `FILE`, as the synopsis of `help` has it.
 std::string as_in_help(const Parameter& parameter) {
-  std::string out(parameter.name);
-  if (out.starts_with("-")) return out;
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-  return out;
+  return parameter.name.starts_with("-") ? std::string(parameter.name) : upper(parameter.name);
 }
 
 /// Every value stays text, because CLI11 reads "010" as 8 and refuses "6040h". What one line gave is

@@ -13,13 +13,6 @@
 namespace servoctl::command {
 namespace {
 
-std::string upper(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
-  return out;
-}
-
 std::string option_words(const Parameter& parameter) {
   std::string out =
       parameter.short_name.empty() ? std::string("    ") : std::string(parameter.short_name) + ", ";

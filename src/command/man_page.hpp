@@ -25,7 +25,7 @@ std::span<const Entry> manual_files();
 std::span<const Entry> manual_examples();
 
 /// servoctl(1) in man(7): global options, commands and exit codes are those of the tables that the parser and
-/// `help` read.
-std::string man_page(std::string_view version, std::string_view date);
+/// `help` read. In Chinese on request; names, command lines and placeholders stay as they are typed.
+std::string man_page(std::string_view version, std::string_view date, bool chinese = false);
 
 }  // namespace servoctl::command

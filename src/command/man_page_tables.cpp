@@ -42,9 +42,9 @@ constexpr Entry kManualEnvironment[] = {
     {"SERVOCTL_PAGER",
      "The program that shows what is longer than the window of the terminal, as a shell takes it, where there "
      "is no `--no-pager`; where it is not set, `PAGER`, else `less -FRX` where there is less. None where it is "
-     "empty or `cat`; nor at the prompt, where the bus goes on meanwhile, for batch files, in a pipe, for JSON, "
-     "for what comes bit by bit such as `watch`, and while a drive is energised. The bus is closed before it "
-     "starts, and the exit code is that of the command."},
+     "empty or `cat`; nor for batch files, in a pipe, for JSON, for what comes bit by bit such as `watch`, and "
+     "while a drive is energised. The bus is closed before it starts, and the exit code is that of the command. "
+     "The prompt needs no program: it shows a window at a time itself, because the bus goes on meanwhile."},
     {"PAGER", "See `SERVOCTL_PAGER`."},
     {"LESS", "Where it is not set the pager gets `FRX`."},
     {"LESSCHARSET", "Where it is not set the pager gets `utf-8`."},

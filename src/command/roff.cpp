@@ -9,6 +9,7 @@ namespace servoctl::command {
 namespace {
 
 constexpr std::size_t kLineLength = 78;
+constexpr std::string_view kBreak = "\\:";  ///< A place where a line may be broken, without a hyphen.
 
 std::string escaped(char32_t c, bool literal) {
   switch (c) {
@@ -47,13 +48,22 @@ std::string escaped(std::string_view text, bool literal) {
   return out;
 }
 
+/// With places between its wide characters at which groff may break the line: it takes Chinese for one word.
+std::string breakable(std::string_view word) {
+  std::string out;
+  for (const auto piece : unbroken_pieces(word)) {
+    if (piece.data() != word.data()) out += kBreak;
+    out += escaped(piece, !is_prose(piece));
+  }
+  return out;
+}
+
 /// The words with spaces and line breaks between them as they were.
 std::string escaped_prose(std::string_view text) {
   std::string out;
   while (!text.empty()) {
     const auto end = std::min(text.find_first_of(" \n"), text.size());
-    const auto word = text.substr(0, end);
-    out += escaped(word, !is_prose(word));
+    out += breakable(text.substr(0, end));
     if (end < text.size()) out += text[end];
     text.remove_prefix(std::min(end + 1, text.size()));
   }
@@ -93,12 +103,27 @@ std::string roff_text(std::string_view text) {
     out += (line.front() == '.' ? "\\&" : "") + line + "\n";
     line.clear();
   };
+  // A long word of many characters goes on in the next line of the source: `\` joins the two.
+  const auto add = [&](std::string_view word) {
+    while (!word.empty()) {
+      const auto at = word.find(kBreak);
+      const auto piece = at == std::string_view::npos ? word : word.substr(0, at + kBreak.size());
+      if (line.ends_with(kBreak) && line.size() + piece.size() > kLineLength) {
+        line += '\\';
+        flush();
+      }
+      line += piece;
+      word.remove_prefix(piece.size());
+    }
+  };
   const auto prose = with_bold_code(text);
   for (const auto paragraph : split(prose, '\n')) {
     for (const auto word : split(paragraph, ' ')) {
       if (word.empty()) continue;
-      if (!line.empty() && line.size() + 1 + word.size() > kLineLength) flush();
-      line += (line.empty() ? "" : " ") + std::string(word);
+      const auto first = std::min(word.find(kBreak), word.size());
+      if (!line.empty() && line.size() + 1 + first > kLineLength) flush();
+      if (!line.empty()) line += ' ';
+      add(word);
       if (ends_sentence(word)) flush();
     }
     flush();

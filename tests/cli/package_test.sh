@@ -31,7 +31,7 @@ has() {  # has NAME FOLDER FILE…
   local file
   for file in "${@:3}"; do [ -s "$2/$file" ] || fail "$1: $file is missing"; done
 }
-common=(share/bash-completion/completions/servoctl share/fish/vendor_completions.d/servoctl.fish share/man/man1/servoctl.1.gz
+common=(share/bash-completion/completions/servoctl share/fish/vendor_completions.d/servoctl.fish share/man/man1/servoctl.1.gz share/man/zh_CN/man1/servoctl.1.gz
   share/doc/servoctl/README.md share/doc/servoctl/copyright share/doc/servoctl/changelog.gz share/doc/servoctl/docs/motion.md
   share/doc/servoctl/docs/schema/envelope.schema.json share/doc/servoctl/docs/schema/backup-file.schema.json share/doc/servoctl/README.zh.md
   share/doc/servoctl/examples/first-contact.servoctl share/servoctl/eds/cia/cia402.eds lib/udev/rules.d/60-servoctl.rules)
@@ -48,6 +48,7 @@ fi
 has .deb root/usr "${common[@]}" share/zsh/vendor-completions/_servoctl share/doc/servoctl/README.Debian share/doc/servoctl/changelog.Debian.gz
 works .deb "$work/root/usr/bin/servoctl"
 gzip -dc root/usr/share/man/man1/servoctl.1.gz | cmp -s - <(root/usr/bin/servoctl man) || fail "the manual page is not that of the program"
+gzip -dc root/usr/share/man/zh_CN/man1/servoctl.1.gz | cmp -s - <(root/usr/bin/servoctl man --lang zh) || fail "nor is the Chinese one"
 for library in libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus libpugixml libnl-3 zlib1g libstdc++ libc6; do
   grep -q "^$library.*-dev (source: .* .*)" root/usr/share/doc/servoctl/copyright || fail "no licence of $library"
 done

@@ -71,6 +71,26 @@ TEST(ManPage, IsAsciiWithoutALineThatIsTakenForARequest) {
   }
 }
 
+TEST(ManPage, IsWholeInChinese) {
+  const auto chinese = man_page("1.2.3", "2026-01-02", true);
+  std::string sections;
+  for (const auto line : split(chinese, '\n'))
+    if (line.starts_with(".SH ")) sections += std::string(line.substr(4)) + " ";
+  EXPECT_EQ(sections, "名称 概要 描述 全局选项 命令 交互模式的词 总线 退出状态 环境变量 文件 示例 另请参阅 ");
+  for (const std::string_view request : {"\n.SS ", "\n.TP\n", "\n.PP\n"}) {
+    const auto count = [&](const std::string& text) {
+      std::size_t found = 0;
+      for (auto at = text.find(request); at != std::string::npos; at = text.find(request, at + 1)) ++found;
+      return found;
+    };
+    EXPECT_GT(count(chinese), 100U) << request;
+    EXPECT_EQ(count(chinese), count(page())) << request;
+  }
+  const std::regex english("^[^\\\\.]*[a-z]{2,} [a-z]{2,}");
+  for (const auto line : split(chinese, '\n'))
+    EXPECT_FALSE(std::regex_search(std::string(line), english)) << line;
+}
+
 TEST(ManPage, NamesBusesAsTheyAreOpened) {
   std::set<std::string_view> schemes;
   for (const auto& bus : manual_buses()) {
@@ -109,6 +129,22 @@ TEST(Roff, KeepsWhatIsTypedAndHyphenatesProse) {
   EXPECT_EQ(roff_text("An open ` stays"), "An open \\(ga stays\n");
   EXPECT_EQ(roff_text(".eds\n'x'"), "\\&.eds\n\\(aqx\\(aq\n");
   EXPECT_EQ(roff_text(""), "");
+  EXPECT_EQ(roff_text("用 `a b` 读，写。"),
+            "\\[u7528] \\fBa b\\fR \\[u8BFB]\\[uFF0C]\\:\\[u5199]\\[u3002]\n");
+}
+
+TEST(Roff, GoesOnInTheNextLineOfTheSourceWithinChinese) {
+  std::string chinese;
+  for (int i = 0; i < 40; ++i) chinese += "中";
+  const auto text = roff_text("a " + chinese + ".b");
+  std::string joined;
+  for (const auto line : split(text, '\n')) {
+    EXPECT_LE(line.size(), 80U) << line;
+    joined += line.ends_with('\\') ? line.substr(0, line.size() - 1) : line;
+  }
+  std::string whole;
+  for (int i = 0; i < 40; ++i) whole += (i > 0 ? "\\:" : "") + std::string("\\[u4E2D]");
+  EXPECT_EQ(joined, "a " + whole + ".b");  // A full stop begins no line.
 }
 
 TEST(Roff, BreaksLongLinesAtSpacesOnly) {

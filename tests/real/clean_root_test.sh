@@ -63,6 +63,8 @@ answer=$(inside servoctl param get Pn0214 -b sim:gsd600@1 -n 1 -d gsd600 || true
 grep -q '60 Hz' <<<"$answer" || fail "param get: $answer"
 answer=$(inside man -w servoctl || true)
 [ "$answer" = /usr/share/man/man1/servoctl.1.gz ] || fail "man -w: $answer"
+answer=$(inside man -L zh_CN.UTF-8 -w servoctl || true)
+[ "$answer" = /usr/share/man/zh_CN/man1/servoctl.1.gz ] || fail "man -L zh_CN.UTF-8 -w: $answer"
 for file in bash-completion/completions/servoctl zsh/vendor-completions/_servoctl fish/vendor_completions.d/servoctl.fish; do
   [ -s "$root/usr/share/$file" ] || fail "$file is missing"
 done
