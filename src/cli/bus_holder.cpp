@@ -240,6 +240,11 @@ bool BusHolder::must_go_on() const {
   return std::any_of(all.begin(), all.end(), [](auto* session) { return session->network().must_go_on(); });
 }
 
+bool BusHolder::leaves_power() const {
+  const auto all = sessions();
+  return std::any_of(all.begin(), all.end(), [](auto* session) { return !session->energised().empty(); });
+}
+
 bool BusHolder::holds_drives() const {
   const auto all = sessions();
   return must_go_on() || std::any_of(all.begin(), all.end(), [](auto* session) {

@@ -99,6 +99,8 @@ class BusHolder {
   /// Drives are energised that cannot stay so without servoctl: they are let go before the program ends, also
   /// when what held them has ended already.
   bool holds_drives() const;
+  /// Whether a drive was left energised over one of them.
+  bool leaves_power() const;
   /// Ends the SYNC that is produced, and says so.
   void stop_sync();
 

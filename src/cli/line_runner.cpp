@@ -62,7 +62,8 @@ int LineRunner::run(std::string_view line) {
   auto& last = shell_->last_write();
   last.set_place(shell_->defaults().nodes);
   last.set_enabled(shell_->stays_open() && !is_batch(*words));
-  return is_batch(*words) ? run_batch(*shell_, *words, {}) : shell_->run(*words);
+  if (is_batch(*words)) return run_batch(*shell_, *words, {});
+  return show_ ? show_(shell_->perform(*words), *words) : shell_->run(*words);
 }
 
 }  // namespace servoctl::cli

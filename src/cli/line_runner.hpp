@@ -1,6 +1,10 @@
 #pragma once
 
+#include <functional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "cli/shell.hpp"
 
@@ -10,7 +14,11 @@ namespace servoctl::cli {
 /// which set what holds for the lines after them.
 class LineRunner {
  public:
-  explicit LineRunner(Shell& shell) : shell_(&shell) {}
+  /// Shows the outcome of a command, whose words these are; the exit code.
+  using Show = std::function<int(const Outcome& outcome, const std::vector<std::string>& words)>;
+
+  /// Without `show` all of it is shown at once.
+  explicit LineRunner(Shell& shell, Show show = {}) : shell_(&shell), show_(std::move(show)) {}
 
   /// Exit code of the line; 0 for an empty one or a comment.
   int run(std::string_view line);
@@ -18,6 +26,7 @@ class LineRunner {
 
  private:
   Shell* shell_;
+  Show show_;
   bool exit_ = false;
 };
 

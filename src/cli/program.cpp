@@ -33,7 +33,6 @@
 namespace servoctl::cli {
 namespace {
 
-constexpr std::string_view kNoPager = "--no-pager";
 constexpr std::string_view kManual = "man";
 constexpr std::string_view kPagerFailed =
     "the pager failed: this is the text as it is; SERVOCTL_PAGER names another";
@@ -92,10 +91,9 @@ std::string standard_text() { return standard_input().take_rest(); }
 /// Whether the line has a result that is whole, for a person at a terminal, and no drive waits for them.
 bool may_page(Shell& shell, const Outcome& outcome, const std::vector<std::string>& words,
               const StandardConsole& console) {
-  const auto end = std::find(words.begin(), words.end(), "--");
-  const bool unwanted = std::find(words.begin(), end, kNoPager) != end || interrupted();
+  const bool unwanted = refuses_pager(words) || interrupted();
   const bool is_whole = !outcome.settings.json && !console.has_shown();
-  const bool holds = outcome.leaves_power || shell.must_go_on();
+  const bool holds = shell.leaves_power() || shell.must_go_on();
   return !unwanted && is_whole && !holds && console.height() > 0 && ::isatty(STDIN_FILENO) == 1;
 }
 
@@ -145,7 +143,7 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
     take_last_place(shell, state_folder());
   else if (const auto opened = shell.open(shell.defaults()); !opened)
     return shell.report_error(opened.error(), false);
-  return run_prompt(shell, console);
+  return run_prompt(shell, console, !refuses_pager(words) && wants_pages());
 }
 
 /// For the completion script of a shell. Any signal ends it.

@@ -115,6 +115,8 @@ class Shell {
   Result<void> release_adapter(std::string_view adapter) { return bus_.release_adapter(adapter); }
   bool produces_sync() const { return bus_.produces_sync(); }
   bool must_go_on() const { return bus_.must_go_on(); }
+  /// Whether a drive was left energised.
+  bool leaves_power() const { return bus_.leaves_power(); }
   /// As BusHolder::stop_sync().
   void stop_sync() { bus_.stop_sync(); }
   /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file

@@ -13,6 +13,8 @@ class Keys {
     right,
     up,
     down,
+    page_up,
+    page_down,
     other,
     lost,  ///< The terminal is gone.
   };

@@ -119,17 +119,18 @@ def it_is_not_paged():
     check("without less nothing is paged", "statusword" in text.lower() and code == 0)
 
 
-def not_at_the_prompt():
+def no_program_at_the_prompt():
+    """The prompt reads long answers itself (prompt_windows_test.py): the bus goes on meanwhile."""
     window = Window("-d", "gsd600", PAGER=other)
     window.see("servoctl.*> ")
     window.terminal.type("objects\r")
-    end = time.monotonic() + 10
-    while not re.search(r"0x6502[\s\S]*> ", window.terminal.text) and time.monotonic() < end:
-        window.terminal.read(0.05)
+    window.see("-- line 23 of")
+    window.terminal.type("q")
+    window.see("servoctl.*> ")
     window.terminal.type("exit\r")
     text, code = window.end()
     check("the prompt ends well", code == 0)
-    check("nothing is paged at the prompt", "OTHER" not in text and "Statusword" in text)
+    check("no program shows what the prompt answers", "OTHER" not in text)
 
 
 def a_pager_that_is_left():
@@ -263,7 +264,7 @@ batch = os.path.join(folder, "lines")
 with open(batch, "w", encoding="utf-8") as lines:
     lines.write("objects -d gsd600\n")
 try:
-    for test in (it_is_paged, it_is_not_paged, not_at_the_prompt, a_pager_that_is_left, a_pager_that_fails, the_exit_code,
+    for test in (it_is_paged, it_is_not_paged, no_program_at_the_prompt, a_pager_that_is_left, a_pager_that_fails, the_exit_code,
                  the_bus_is_closed, keys_and_signals, less_itself, the_manual):
         test()
     for failure in pty_terminal.failures:

@@ -89,6 +89,12 @@ void Console::log_typed(std::string_view line) {
   check_log();
 }
 
+void Console::log_unseen(std::string_view text) {
+  if (log_ == nullptr || text.empty()) return;
+  log_->answered(printable_lines(text));
+  check_log();
+}
+
 void Console::check_log() {
   const auto failure = log_->take_failure();
   if (!failure) return;

@@ -102,6 +102,8 @@ class Console {
   const LineLog* log() const { return log_.get(); }
   /// A line, or the answer to a question.
   void log_typed(std::string_view line);
+  /// What is answered and not shown, because who read has seen enough.
+  void log_unseen(std::string_view text);
 
   /// What is done while the user is waited for; it answers how long it can be left alone. May be empty.
   void set_service(std::function<Duration()> service) { service_ = std::move(service); }

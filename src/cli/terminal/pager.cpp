@@ -112,15 +112,31 @@ bool has_failed(int status) {
   return code != 0 && code != kLeft && code < kSignal;
 }
 
+/// What the user says of it; null for nothing.
+const char* wanted_pager() {
+  const char* own = std::getenv("SERVOCTL_PAGER");
+  return own != nullptr ? own : std::getenv("PAGER");
+}
+
 }  // namespace
 
+bool wants_pages() {
+  const char* wanted = wanted_pager();
+  if (!moves_cursor()) return false;
+  const auto command = wanted == nullptr ? std::string_view("less") : trim(wanted);
+  return !command.empty() && command != "cat";
+}
+
 std::string pager_command() {
-  if (!moves_cursor()) return {};
-  const char* own = std::getenv("SERVOCTL_PAGER");
-  const char* wanted = own != nullptr ? own : std::getenv("PAGER");
+  if (!wants_pages()) return {};
+  const char* wanted = wanted_pager();
   if (wanted == nullptr) return is_in_path("less") ? "less -FRX" : "";
-  const auto command = trim(wanted);
-  return command == "cat" ? std::string() : std::string(command);
+  return std::string(trim(wanted));
+}
+
+bool refuses_pager(const std::vector<std::string>& words) {
+  const auto end = std::find(words.begin(), words.end(), "--");
+  return std::find(words.begin(), end, "--no-pager") != end;
 }
 
 bool is_in_path(std::string_view program) {

@@ -3,12 +3,20 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace servoctl::cli {
 
 /// What a shell takes for the pager of the user: $SERVOCTL_PAGER, else $PAGER, else `less -FRX` where there
 /// is less. Empty where none is wanted (an empty value, `cat`), or the terminal has no cursor to move.
 std::string pager_command();
+
+/// Whether the user wants what is long a window at a time: not with an empty value of these, `cat`, or a
+/// terminal without a cursor.
+bool wants_pages();
+
+/// Whether a line says --no-pager.
+bool refuses_pager(const std::vector<std::string>& words);
 
 /// Whether a folder of $PATH has this program.
 bool is_in_path(std::string_view program);

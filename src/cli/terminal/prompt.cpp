@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,18 +13,18 @@
 
 #include "base/printable.hpp"
 #include "base/timespec.hpp"
-#include "cli/batch/batch_command.hpp"
 #include "cli/last_place.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/state_folder.hpp"
-#include "cli/terminal/ascii_form.hpp"
 #include "cli/terminal/completer.hpp"
 #include "cli/terminal/line_editor.hpp"
+#include "cli/terminal/pager.hpp"
+#include "cli/terminal/prompt_notices.hpp"
 #include "cli/terminal/prompt_terminal.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "cli/terminal/signals.hpp"
 #include "cli/terminal/typed_keys.hpp"
-#include "cli/words.hpp"
+#include "cli/terminal/window_reader.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -34,28 +33,22 @@ namespace {
 constexpr Duration kLook = std::chrono::seconds(1);
 constexpr std::string_view kDropped =
     "what was typed meanwhile was dropped: nothing starts by itself behind a line that may move a motor";
-/// Notices that are kept for a terminal that takes nothing.
-constexpr std::size_t kMostUntold = 100;
 /// Bytes of a paste that nothing marks; what is beyond is dropped.
 constexpr std::size_t kMostPasted = 1U << 16U;
 
-/// Whether the line may have moved a motor.
-bool may_move(const std::string& line) {
-  const auto words = split_words(line);
-  if (!words || words->empty()) return false;
-  const auto match = match_command(*words);
-  return is_batch(*words) || (match.command != nullptr && match.command->effect >= command::Effect::moves);
-}
-
 class Prompt {
  public:
-  Prompt(Shell& shell, Console& console)
+  Prompt(Shell& shell, Console& console, bool by_windows)
       : shell_(&shell),
         console_(&console),
-        runner_(shell),
+        runner_(shell, [this](const Outcome& outcome, const auto& words) { return show(outcome, words); }),
+        by_windows_(by_windows),
         editor_(history_,
                 LineEditor::Host{
-                    .size = [this] { return screen_size(); },
+                    .size =
+                        [this] {
+                          return Screen::Size{console_->width(), console_->height()};
+                        },
                     .offer = [this](std::string_view before) { return complete(before, *shell_); },
                     .in_language = [this](std::string_view text) { return console_->in_language(text); },
                     .is_ascii = [this] { return console_->is_ascii(); }}),
@@ -74,8 +67,6 @@ class Prompt {
   int run();
 
  private:
-  Screen::Size screen_size() const { return {console_->width(), console_->height()}; }
-  PromptText prompt() const;
   void begin_line(bool moved = false);
   bool wait_for_key();
   void take_keys();
@@ -85,13 +76,17 @@ class Prompt {
   void show_notices();
   void drop_line();
   void run_line();
+  int show(const Outcome& outcome, const std::vector<std::string>& words);
+  void read_by_windows(const std::string& text);
   void keep_place();
+  void wipe();
   void draw();
   bool wait_for(pollfd& wanted, Duration longest);
 
   Shell* shell_;
   Console* console_;
   LineRunner runner_;
+  bool by_windows_;
   LineHistory history_;
   LineEditor editor_;
   PromptTerminal terminal_;
@@ -102,20 +97,16 @@ class Prompt {
   bool gives_up_paste_ = false;
   bool held_ = false;   ///< A key waits, and the terminal takes nothing: what it shows would be lost.
   bool stale_ = false;  ///< What is on the screen is not what was typed.
-  std::vector<std::string> untold_;  ///< Notices that wait for the terminal.
-  std::size_t left_out_ = 0;         ///< Those beyond.
+  bool reads_ = false;  ///< A long answer is on the screen, and no line.
+  PromptNotices notices_;
 };
 
-/// Red where there are colours.
-PromptText Prompt::prompt() const {
-  auto out = prompt_text(*shell_, console_->width());
-  if (console_->is_ascii()) out.text = ascii_form(out.text);
-  out.alarm = out.alarm && has_colours(console_->colour(), STDOUT_FILENO);
-  return out;
+void Prompt::wipe() {
+  if (terminal_.edits() && !reads_) terminal_.draw(editor_.wipe());
 }
 
 void Prompt::draw() {
-  if (!terminal_.edits()) return;
+  if (!terminal_.edits() || reads_) return;
   stale_ = terminal_.is_behind();
   if (!stale_) terminal_.draw(editor_.draw());
 }
@@ -123,7 +114,7 @@ void Prompt::draw() {
 /// `moved`: behind a line that may have moved a motor.
 void Prompt::begin_line(bool moved) {
   const bool waits = editor_.waits_pasted();
-  editor_.set_prompt(prompt());
+  editor_.set_prompt(dressed_prompt(*shell_, *console_));
   editor_.begin();
   terminal_.begin();
   // An Enter typed while a motor turned, or before the next line that waits is shown, starts nothing. Of
@@ -158,7 +149,7 @@ int Prompt::run() {
 /// True when it is there; frames and timers of the bus are served meanwhile.
 bool Prompt::wait_for(pollfd& wanted, Duration longest) {
   const auto lost = [this](const Error& error) {
-    if (terminal_.edits()) terminal_.draw(editor_.wipe());
+    wipe();
     shell_->report_error(error, false);
     draw();
   };
@@ -236,38 +227,25 @@ void Prompt::look() {
   if (change == PromptTerminal::Change::stopped) editor_.forget_screen();
   if (change != PromptTerminal::Change::none) draw();
   show_notices();
-  if (const auto now = prompt(); terminal_.edits() && now != editor_.prompt()) {
+  if (const auto now = dressed_prompt(*shell_, *console_); terminal_.edits() && now != editor_.prompt()) {
     editor_.set_prompt(now);
     draw();
   }
 }
 
 void Prompt::show_notices() {
-  const auto& settings = shell_->defaults();
-  const auto loaded =
-      settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : shell_->profile(settings.drive);
-  for (const auto& notice : shell_->take_notices(loaded ? *loaded : nullptr, settings.chinese)) {
-    if (untold_.size() < kMostUntold)
-      untold_.push_back(notice);
-    else
-      ++left_out_;
-  }
-  if (untold_.empty() || terminal_.is_behind()) return;
-  if (left_out_ > 0)
-    untold_.push_back(fmt::format("{} messages were not shown: the output was not read in time",
-                                  std::exchange(left_out_, 0)));
-  if (terminal_.edits()) terminal_.draw(editor_.wipe());
-  for (const auto& notice : std::exchange(untold_, {}))
+  notices_.hear(*shell_);
+  if (notices_.empty() || terminal_.is_behind()) return;
+  wipe();
+  for (const auto& notice : notices_.give())
     terminal_.say("* " + printable(console_->in_language(notice)) + "\n");
   draw();
 }
 
 void Prompt::drop_line() {
   clear_interrupt();
-  if (terminal_.edits())
-    terminal_.draw(editor_.leave("^C"));
-  else
-    terminal_.say("^C\n");
+  if (!terminal_.edits()) terminal_.say("^C\n");
+  if (terminal_.edits()) terminal_.draw(editor_.leave("^C"));
   editor_.drop();
   gives_up_paste_ = editor_.is_inside_key();
   begin_line();
@@ -286,8 +264,37 @@ void Prompt::run_line() {
   begin_line(may_move(text));
 }
 
+/// A long answer is read while the buses are served. What was typed ahead goes on with the next line: nothing
+/// is asked then.
+int Prompt::show(const Outcome& outcome, const std::vector<std::string>& words) {
+  const auto& settings = outcome.settings;
+  const bool holds = shell_->leaves_power() || shell_->must_go_on();
+  const bool pages = by_windows_ && !refuses_pager(words) && !settings.json && !settings.quiet && !holds &&
+                     !interrupted() && !keys_.wait();
+  if (!pages) return cli::show(*console_, outcome);
+  const auto text = text_of(outcome, console_->width());
+  if (is_longer_than(text, console_->width(), console_->height()))
+    read_by_windows(text);
+  else
+    console_->out(text);
+  show_remarks(*console_, outcome);
+  return outcome.code();
+}
+
+void Prompt::read_by_windows(const std::string& text) {
+  reads_ = true;
+  show_by_windows(*console_, text, [this] {
+    pollfd key{STDIN_FILENO, POLLIN, 0};
+    (void)wait_for(key, kLook);
+    show_notices();
+  });
+  reads_ = false;
+}
+
 }  // namespace
 
-int run_prompt(Shell& shell, Console& console) { return Prompt(shell, console).run(); }
+int run_prompt(Shell& shell, Console& console, bool by_windows) {
+  return Prompt(shell, console, by_windows).run();
+}
 
 }  // namespace servoctl::cli

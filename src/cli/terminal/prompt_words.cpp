@@ -1,11 +1,16 @@
 #include "cli/terminal/prompt_words.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 #include <set>
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "cli/batch/batch_command.hpp"
+#include "cli/parse.hpp"
+#include "cli/terminal/ascii_form.hpp"
 #include "cli/terminal/begun_place.hpp"
+#include "cli/words.hpp"
 #include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 #include "report/catalogue.hpp"
@@ -184,6 +189,13 @@ void tell_other_family(Shell& shell, const std::string& said) {
 
 }  // namespace
 
+PromptText dressed_prompt(Shell& shell, const Console& console) {
+  auto out = prompt_text(shell, console.width());
+  if (console.is_ascii()) out.text = ascii_form(out.text);
+  out.alarm = out.alarm && has_colours(console.colour(), STDOUT_FILENO);
+  return out;
+}
+
 bool is_exit(const std::vector<std::string>& words) {
   return words.size() == 1 && (words.front() == "exit" || words.front() == "quit");
 }
@@ -219,6 +231,13 @@ std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& word
   shell.defaults() = std::move(*settings);
   if (word->name == "drive") tell_other_family(shell, words[1]);
   return Outcome{.command = std::string(word->name), .settings = shell.defaults()};
+}
+
+bool may_move(const std::string& line) {
+  const auto words = split_words(line);
+  if (!words || words->empty()) return false;
+  const auto match = match_command(*words);
+  return is_batch(*words) || (match.command != nullptr && match.command->effect >= command::Effect::moves);
 }
 
 }  // namespace servoctl::cli

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/shell.hpp"
+#include "cli/terminal/console.hpp"
 #include "cli/terminal/line_screen.hpp"
 
 namespace servoctl::cli {
@@ -15,6 +16,9 @@ namespace servoctl::cli {
 /// it was heard some time ago. In red when a node is in fault. Nothing is asked of a drive for it. `window`:
 /// columns of the terminal, in which most are left for what is typed; 0: it is as long as it is.
 PromptText prompt_text(Shell& shell, std::size_t window = 0);
+
+/// The same as this terminal shows it: red where there are colours, ASCII where the locale wants it.
+PromptText dressed_prompt(Shell& shell, const Console& console);
 
 /// Whether the line is `exit` or `quit`.
 bool is_exit(const std::vector<std::string>& words);
@@ -30,5 +34,8 @@ std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& word
 
 /// The defaults after such a line, nothing opened; unchanged after any other one. Errors as choose().
 Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::string>& words);
+
+/// Whether the line may have moved a motor.
+bool may_move(const std::string& line);
 
 }  // namespace servoctl::cli

@@ -23,6 +23,9 @@ termios key_by_key(termios mode) {
   return mode;
 }
 
+/// What stands between `ESC [` and the end of a key.
+bool is_parameter(int byte) { return (byte >= '0' && byte <= '9') || byte == ';'; }
+
 }  // namespace
 
 TerminalKeys::TerminalKeys(int descriptor, const termios& before)
@@ -68,13 +71,19 @@ TerminalKeys::Key TerminalKeys::take() {
   if (first != kEscape) return Key::other;
   const int second = next_byte();
   if (second != '[' && second != 'O') return Key::other;  // Cursor keys, or those of application mode.
-  switch (next_byte()) {
+  const int third = next_byte();
+  switch (third) {
     case 'A': return Key::up;
     case 'B': return Key::down;
     case 'C': return Key::right;
     case 'D': return Key::left;
-    default: return Key::other;
+    default: break;
   }
+  // `5~` is page up; with Ctrl, `5;5~`, and all others are other keys, whole.
+  const int fourth = is_parameter(third) ? next_byte() : third;
+  for (int last = fourth; is_parameter(last);) last = next_byte();
+  if (fourth != '~') return Key::other;
+  return third == '5' ? Key::page_up : third == '6' ? Key::page_down : Key::other;
 }
 
 }  // namespace servoctl::cli

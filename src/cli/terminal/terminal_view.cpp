@@ -69,12 +69,17 @@ void TerminalView::refresh(TimePoint now) {
   draw();
 }
 
+/// Rows that the page keys scroll by: half a window, so that one sees where one was.
+int TerminalView::page() const { return static_cast<int>(std::max<std::size_t>(screen_.size().rows, 2) / 2); }
+
 void TerminalView::take_keys() {
   if (!keys_) return;
   for (auto key = keys_->take(); key != Keys::Key::none && !over_; key = keys_->take()) {
     switch (key) {
       case Keys::Key::up: table_.scroll(-1); break;
       case Keys::Key::down: table_.scroll(1); break;
+      case Keys::Key::page_up: table_.scroll(-page()); break;
+      case Keys::Key::page_down: table_.scroll(page()); break;
       case Keys::Key::lost: over_ = true; break;
       case Keys::Key::other:
         if (keys_->character() == ' ') table_.pause();

@@ -45,6 +45,7 @@ class TerminalView final : public show::LiveView {
  private:
   /// A node-ID, or what the node is called.
   std::string name_of(std::string node) const;
+  int page() const;
   void take_keys();
   void draw();
   /// The cursor at the beginning of the table, whatever has become of the screen since it was drawn.
