@@ -83,6 +83,21 @@ struct Saved {
   std::size_t left_out = 0;
 };
 
+/// A batch file has a line for what any drive of the family takes; `restore` of another format knows more.
+void tell_lines(Context& context, const std::filesystem::path& file, std::uint8_t node, std::size_t values) {
+  show::Desk reader = context;
+  const auto read = settings::read_backup(reader, file, context.front_end, node);
+  if (!read) return;
+  const auto lines = static_cast<std::size_t>(
+      std::count_if(read->entries.begin(), read->entries.end(),
+                    [](const settings::Backup::Entry& entry) { return entry.bytes.has_value(); }));
+  if (lines == values) return;
+  context.notices.push_back(fmt::format(
+      "{} has lines for {} of {} values: not for those outside of their limits, which are comments, "
+      "and for entries of PDOs that are not in use; .json, .dcf and .csv have all",
+      file.string(), lines, values));
+}
+
 Result<Saved> save(Context& context, settings::Backup backup, bool changed, settings::BackupFormat format,
                    const std::filesystem::path& file) {
   if (changed) keep_changed(*context.profile, backup);
@@ -92,6 +107,7 @@ Result<Saved> save(Context& context, settings::Backup backup, bool changed, sett
   const auto text = settings::backup_text(context, backup, format, file);
   if (!text) return fail(text.error());
   if (const auto written = write_file_atomically(file, *text); !written) return fail(written.error());
+  if (format == settings::BackupFormat::batch) tell_lines(context, file, backup.identity.node, out.values);
   return out;
 }
 

@@ -159,8 +159,8 @@ class Enabling {
     if (taken_back_.count(node) != 0) return "disabled again";
     if (failed_ && begun_.count(node) != 0) return "failed";
     if (failed_) return "not enabled";
-    return context_->session->network().must_go_on() ? "ENERGISED while servoctl runs"
-                                                     : "ENERGISED, and stays so";
+    const bool ends = context_->disables_at_end || context_->session->network().must_go_on();
+    return ends ? "ENERGISED while servoctl runs" : "ENERGISED, and stays so";
   }
 
   Context* context_;
@@ -200,8 +200,9 @@ const Command kEnable{
         "607Ah to the actual position), and goes to \"operation enabled\" by controlwords 06h, 07h, 0Fh, "
         "waiting for each state. Of several nodes all are looked at before the first is enabled: where one is "
         "refused none is, and where one fails those that were enabled before it are disabled again. "
-        "The drive stays energised when a single command, or lines that ended without an error, are "
-        "done: `disable` de-energises it. Lines that end with an error, and a lost terminal, stop and disable it. Over "
+        "The drive stays energised when a single command, or lines of a file or a pipe that ended without an "
+        "error, are done: `disable` de-energises it. A prompt that ends, lines that end with an error, and a "
+        "lost terminal stop and disable it. Over "
         "EtherCAT it stays so only while servoctl exchanges process data with it: a single command holds it until "
         "Ctrl-C, and then stops and disables it. "
         "`jog` and `move` enable and disable by themselves.",

@@ -207,7 +207,7 @@ class LineParser {
   tl::unexpected<Error> bad_choice(const Parameter& parameter, const std::string& value) const {
     const std::vector<std::string> choices(parameter.choices.begin(), parameter.choices.end());
     return fail(Errc::usage,
-                fmt::format("{}: '{}' is not valid for {}", command_->path, value, parameter.name),
+                fmt::format("{}: '{}' is not valid for {}", command_->path, value, as_in_help(parameter)),
                 "write " + one_of(choices));
   }
 
@@ -254,22 +254,34 @@ CommandMatch match_command(const std::vector<std::string>& words) {
   return best;
 }
 
+Result<void> check_options_alone(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto& word = words[i];
+    const auto* option = global_option(word);
+    // `-n3` is `-n 3`.
+    const bool joined = word.size() > 2 && word[1] != '-' && global_option(word.substr(0, 2)) != nullptr;
+    if (option == nullptr && !joined && word.starts_with('-')) {
+      std::vector<std::string> known;
+      for (const auto& each : command::global_options()) known.emplace_back(each.name);
+      return fail(Errc::usage, fmt::format("there is no option '{}'", word), did_you_mean(word, known));
+    }
+    if (option != nullptr && option->kind != Kind::flag && word.find('=') == std::string::npos) ++i;
+  }
+  return {};
+}
+
 Result<ParsedLine> parse_line(const std::vector<std::string>& words) {
   const auto match = match_command(words);
   if (match.first == words.size()) {
-    for (const auto& word : words)
-      if (global_option(word) == nullptr && word.starts_with('-')) {
-        std::vector<std::string> known;
-        for (const auto& option : command::global_options()) known.emplace_back(option.name);
-        return fail(Errc::usage, fmt::format("there is no option '{}'", word), did_you_mean(word, known));
-      }
+    if (const auto known = check_options_alone(words); !known) return fail(known.error());
     return fail(Errc::usage, "a command is missing", "`help` lists the commands");
   }
   if (match.command == nullptr) return fail(unknown_command(words, match.first));
   auto rest = words;
   const auto begin = rest.begin() + static_cast<std::ptrdiff_t>(match.first);
   rest.erase(begin, begin + static_cast<std::ptrdiff_t>(match.used));
-  const bool asks = match.command->path == "help" && !rest.empty() && rest.back().starts_with('-');
+  const bool is_behind = match.first + match.used < words.size();
+  const bool asks = match.command->path == "help" && is_behind && rest.back().starts_with('-');
   auto of_option = rest;
   if (asks) of_option.insert(of_option.end() - 1, "--");
   auto arguments = parser_of(*match.command).parse(std::move(rest));

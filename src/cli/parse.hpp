@@ -14,6 +14,9 @@ struct ParsedLine {
   command::Arguments arguments;  ///< Of the command and of the global options.
 };
 
+/// Words without a command: Errc::usage for an option that no command has, or only some.
+Result<void> check_options_alone(const std::vector<std::string>& words);
+
 /// Finds the command (global options may stand before it) and its arguments. Errc::usage with the nearest
 /// names for an unknown command or option, and for a missing or superfluous word.
 Result<ParsedLine> parse_line(const std::vector<std::string>& words);

@@ -74,6 +74,7 @@ int run_pipe(Shell& shell) {
 /// Options without a command hold for all lines that follow. They are read as those of the command that needs
 /// nothing else.
 Result<Settings> settings_for_lines(const Settings& defaults, std::vector<std::string> words) {
+  if (const auto known = check_options_alone(words); !known) return fail(known.error());
   words.emplace_back("help");
   const auto parsed = parse_line(words);
   if (!parsed) return fail(parsed.error());

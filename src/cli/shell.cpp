@@ -133,6 +133,7 @@ Result<void> Shell::make_ready(Run& run, const command::Arguments& arguments) {
   context.dry_run = run.settings.dry_run;
   context.read_only = run.settings.read_only;
   context.stays_open = stays_open_;
+  context.disables_at_end = disables_at_end_;
   context.drive_folders = options_.drive_folders;
   context.state_folder = options_.state_folder;
   context.keeps_samples = run.settings.json && !run.settings.samples;

@@ -109,6 +109,8 @@ class Shell {
   /// before.
   bool stay_open(bool stays) { return std::exchange(stays_open_, stays); }
   bool stays_open() const { return stays_open_; }
+  /// Who reads the lines de-energises at the end what they enabled.
+  void disable_at_end() { disables_at_end_ = true; }
   session::Protection::Hold protect(session::Care care) { return {&protection_, care}; }
   std::vector<std::uint8_t> energised_on(std::string_view url) const { return bus_.energised_on(url); }
   bool has_adapter(std::string_view adapter) const { return bus_.has_adapter(adapter); }
@@ -217,6 +219,7 @@ class Shell {
   std::string no_family_hint() const;
   void learn_from(Run& run);
   void remember_family(Run& run);
+  bool is_contradicted(Run& run, session::Session& session, const session::Identity& identity);
   void remember(Run& run, session::Session& session, std::uint8_t node);
   void offer_turn(Run& run);
   Outcome help(const std::vector<std::string>& words, Settings settings);
@@ -229,6 +232,7 @@ class Shell {
   session::Protection protection_;
   BusHolder bus_;
   bool stays_open_ = false;
+  bool disables_at_end_ = false;
   std::vector<std::uint8_t> unheard_;  ///< Nodes of the last line, a second of which may still answer.
   std::set<std::pair<std::uint64_t, std::uint8_t>> written_;  ///< Nodes, and the opening() of their bus.
   std::optional<Error> incomplete_trace_;  ///< Told as a notice of a line; the exit code comes at the end.

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cli/shell.hpp"
+#include "session/family_check.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
@@ -231,6 +232,18 @@ void Shell::remember_family(Run& run) {
   }
 }
 
+/// A line that only read asked nobody what they are: what it shows is in the words of another family. Tells
+/// so.
+bool Shell::is_contradicted(Run& run, Session& session, const session::Identity& identity) {
+  const auto& profile = *run.context.profile;
+  const auto verdict = session::judge_family(identity, profile, drive::find_families(options_.drive_folders));
+  if (verdict.kind != session::FamilyVerdict::Kind::contradicted) return false;
+  if (session.identities().is_news(identity.node, profile.family + "!"))
+    run.context.notices.push_back(
+        fmt::format("node {}: not a {}: {}", identity.node, profile.family, verdict.why));
+  return true;
+}
+
 void Shell::remember(Run& run, Session& session, std::uint8_t node) {
   const auto& now = families_[key_of(session, node)];
   const KnownDriveFile file(options_.state_folder, session.url(), node);
@@ -239,6 +252,10 @@ void Shell::remember(Run& run, Session& session, std::uint8_t node) {
   if (same && (now.turn.empty() || (*before)->turn == now.turn)) return;
   const auto identity = session::read_identity(session, node);
   if (!identity || !session::refuse_duplicate(session, node)) return;
+  if (is_contradicted(run, session, *identity)) {
+    families_.erase(key_of(session, node));
+    return;
+  }
   KnownDrive drive{now.family, now.turn, utc_now_text(), *identity};
   if (same && drive.turn.empty()) drive.turn = (*before)->turn;
   if (const auto written = file.write(drive); !written)

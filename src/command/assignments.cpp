@@ -19,8 +19,10 @@ Result<std::vector<Assignment>> parse_assignments(std::span<const std::string> w
   for (const auto& word : words) {
     const auto equals = word.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
-      return fail(Errc::usage, fmt::format("'{}' is not an assignment", word),
-                  "write `param set Pn0202 2` or `param set Pn0202=2 Pn0215=800`");
+      return fail(
+          Errc::usage, fmt::format("'{}' is not an assignment", word),
+          "write `param set ID VALUE` or `param set ID=VALUE ID=VALUE`; a unit stands behind its number "
+          "without a blank: 45Hz");
     out.push_back({std::string_view(word).substr(0, equals), std::string_view(word).substr(equals + 1)});
   }
   return out;

@@ -17,6 +17,7 @@ struct Context : show::Desk {
   bool nodes_typed = false;                ///< In the line itself; else by `use` or the environment.
   bool read_only = false;                  ///< Nothing in a drive may be changed.
   bool stays_open = false;                ///< Other lines follow on the same session: a prompt, a batch file.
+  bool disables_at_end = false;           ///< Whoever leaves de-energises what was enabled: a prompt.
   FrontEnd* front_end = nullptr;          ///< Null: there is none, and nothing is held.
   std::span<Context* const> others = {};  ///< The other buses and families of the line (Command::joins).
   Context* failed = nullptr;              ///< Of `others`, the one whose bus ended the run.

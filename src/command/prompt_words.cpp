@@ -76,8 +76,8 @@ constexpr PromptWord kPromptWords[] = {
      .argument = {},
      .summary = "Leave the prompt (also quit, or Ctrl-D)",
      .details =
-         "SYNC of `sync start` ends with it. A drive on CAN that `enable` energised stays so: `disable` it "
-         "first. The next prompt opens where this one was, unless it is told another place.",
+         "SYNC of `sync start` ends with it. A drive that `enable` energised at this prompt is stopped and "
+         "disabled, which is told. The next prompt opens where this one was, unless it is told another place.",
      .examples = kExitExamples},
 };
 

@@ -1,4 +1,5 @@
 // Where the data of the families stand.
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <system_error>
@@ -37,6 +38,12 @@ std::vector<fs::path> drive_folders() {
     out.push_back(fs::path(home) / ".config/servoctl/drives");
   if (auto own = own_folder()) out.push_back(std::move(*own));
   return out;
+}
+
+const Family* find_family(std::span<const Family> families, std::string_view name) {
+  const auto found = std::find_if(families.begin(), families.end(),
+                                  [&](const Family& family) { return equals_nocase(family.name, name); });
+  return found == families.end() ? nullptr : &*found;
 }
 
 Folders::operator std::span<const fs::path>() const {

@@ -220,7 +220,9 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
   auto hint = profile.parameters.empty() ? fmt::format("{} has no panel parameter table", profile.family)
               : is_ascii(text)           ? did_you_mean(text, known)
                                          : near_in_chinese(profile, text, false);
-  if (hint.empty()) hint = "`param list` shows all, `param search WORD` finds them by name";
+  if (hint.empty())
+    hint = fmt::format("`param list -d {0}` shows all, `param search WORD -d {0}` finds them by name",
+                       profile.family);
   return fail(Errc::usage, fmt::format("'{}' is not a panel parameter of {}", text, profile.family),
               std::move(hint));
 }

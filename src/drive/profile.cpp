@@ -45,6 +45,8 @@ Result<void> add_faults(Profile& profile, const fs::path& path) {
   if (!text) return fail(text.error());
   auto faults = parse_faults(*text, path.string());
   if (!faults) return fail(faults.error());
+  auto& inherited = profile.parent_faults;
+  inherited.insert(inherited.begin(), profile.faults.begin(), profile.faults.end());
   profile.faults = std::move(*faults);
   return {};
 }
@@ -229,11 +231,24 @@ std::vector<Family> find_families(std::span<const fs::path> folders) {
 
 namespace {
 
+/// To a family with faults of its own and no parent those of CiA 402. Without them it is as good as before.
+void add_standard_faults(Profile& profile, std::span<const Family> families) {
+  const auto* generic = find_family(families, kGenericFamily);
+  if (generic == nullptr || profile.is_generic() || profile.faults.empty() || !profile.parent_faults.empty())
+    return;
+  const auto path = with_extension(generic->stem, ".faults.csv");
+  const auto text = read_file(path);
+  if (!text) return;
+  if (auto faults = parse_faults(*text, path.string())) profile.parent_faults = std::move(*faults);
+}
+
 Result<Profile> load_family(std::string_view family, std::span<const fs::path> folders, int ancestors) {
   const auto families = find_families(folders);
-  const auto found = std::find_if(families.begin(), families.end(),
-                                  [&](const Family& f) { return equals_nocase(f.name, family); });
-  if (found != families.end()) return load_parts(*found, folders, ancestors);
+  if (const auto* found = find_family(families, family)) {
+    auto profile = load_parts(*found, folders, ancestors);
+    if (profile && ancestors == 0) add_standard_faults(*profile, families);
+    return profile;
+  }
   std::vector<std::string> names;
   for (const auto& known : families) names.push_back(known.name);
   auto hint = did_you_mean(family, names);
@@ -248,13 +263,21 @@ Result<Profile> load_family(std::string_view family, std::span<const fs::path> f
 
 }  // namespace
 
+const Fault* Profile::parent_fault(std::uint16_t code) const {
+  const auto fault = std::find_if(parent_faults.begin(), parent_faults.end(),
+                                  [code](const Fault& one) { return one.code == code; });
+  return fault == parent_faults.end() ? nullptr : &*fault;
+}
+
 Result<Profile> load_profile(std::string_view family, std::span<const fs::path> folders) {
   if (names_a_file(family)) return load_single_file(fs::path(family), folders);
   return load_family(family, folders, 0);
 }
 
 Result<Profile> load_profile(const Family& family, std::span<const fs::path> folders) {
-  return load_parts(family, folders, 0);
+  auto profile = load_parts(family, folders, 0);
+  if (profile) add_standard_faults(*profile, find_families(folders));
+  return profile;
 }
 
 Profile profile_of_sheet(od::EdsFile sheet, std::string name, std::span<const fs::path> folders) {

@@ -27,6 +27,9 @@ struct Profile {
   od::Dictionary dictionary;
   std::vector<od::Parameter> parameters;
   std::vector<Fault> faults;
+  /// Where it has a table of its own those of its parents, or of CiA 402: what codes mean that it does not
+  /// list.
+  std::vector<Fault> parent_faults;
   std::vector<std::string> warnings;  ///< Findings in the files that did not stop them from being used.
   bool of_file = false;               ///< A file of the user's own, not a family by its name.
   /// The EDS, DCF or ESI the dictionary comes from, as for od::sheet_name(); empty: none.
@@ -38,6 +41,9 @@ struct Profile {
   const od::Parameter* parameter(std::string_view id) const;
   /// The parameter that stands at this object.
   const od::Parameter* parameter(ObjectAddress object) const;
+
+  /// What its parents, or CiA 402, say of a code that it does not list itself; null for nothing.
+  const Fault* parent_fault(std::uint16_t code) const;
 
   /// The rules are those of CiA 301 and 402 alone: what this drive does otherwise is not known.
   bool is_generic() const;
@@ -84,6 +90,9 @@ struct Family {
 /// All families in the folders and one level below, by name; the first folder that has one wins. Reads no
 /// file.
 std::vector<Family> find_families(std::span<const std::filesystem::path> folders);
+
+/// The one of this name, in any case of its letters; null for none.
+const Family* find_family(std::span<const Family> families, std::string_view name);
 
 /// Loads a family by name, or a user's own `.eds`, `.dcf`, `.xml` (of several devices one: `.xml#2`), `.csv`
 /// or

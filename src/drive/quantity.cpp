@@ -61,6 +61,11 @@ Result<Quantity> encoded(const Meaning& meaning, double number) {
   return Quantity{*value, *rounding};
 }
 
+/// A limit of whole steps; where there is none the number itself.
+double bound(const std::optional<od::Value>& limit, double number) {
+  return limit ? od::decode_number(od::Encoding::plain, *limit) : number;
+}
+
 Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& given, std::string_view text,
                                Steps steps) {
   const auto factor = in_own_unit(meaning, given.unit);
@@ -72,11 +77,12 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
   if (std::abs(raw) > 9.0e18) return too_large(text);
   const double whole = static_cast<double>(std::llrint(raw));
   const double step = meaning.scale / *factor;
+  const double nearest = std::clamp(whole, bound(meaning.min, whole), bound(meaning.max, whole));
   if (steps == Steps::exact && std::abs(raw - whole) > kWhole)
     return fail(Errc::usage,
                 fmt::format("'{}' is {} steps of {} {}, not a whole number", text, plain_number(raw, 9),
                             plain_number(meaning.scale, 6), meaning.unit),
-                fmt::format("the nearest value is {} {}", plain_number(tidy(whole * step), 9), given.unit));
+                fmt::format("the nearest value is {} {}", plain_number(tidy(nearest * step), 9), given.unit));
   const auto rounding =
       judge_rounding({given.number, tidy(whole * step), std::abs(step), std::string(given.unit)});
   if (!rounding) return fail(rounding.error());

@@ -6,6 +6,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/load_unit.hpp"
 #include "drive/unit.hpp"
 #include "session/measure.hpp"
 
@@ -109,7 +110,10 @@ Result<void> MotionUnits::check_unit(const drive::Meaning& what, ObjectAddress o
     if (converts(what, one)) units.push_back(one);
   if (!converts(what, what.unit) || std::find(units.begin(), units.end(), what.unit) == units.end())
     units.push_back(what.unit);
-  auto hint = fmt::format("its unit here is one of these: {}", fmt::join(units, ", "));
+  auto hint = units.size() == 1 ? fmt::format("its unit here is {}", units.front())
+                                : fmt::format("its unit here is one of these: {}", fmt::join(units, ", "));
+  if (given && !of_the_load && drive::parse_load_unit(fmt::format("1 {}", given->unit), 1))
+    append(hint, fmt::format("{} needs `per_turn` of the axis in a cabinet file", given->unit), "; ");
   const bool bare = parse_integer(trim(text)) || parse_real(trim(text));
   if (bare) return fail(Errc::usage, fmt::format("'{}' has no unit", text), std::move(hint));
   if (!given)

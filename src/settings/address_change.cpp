@@ -227,17 +227,16 @@ std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t
   const bool is_serial = name.starts_with("slcan:");
   const bool is_kernels = name.find(':') == std::string::npos;
   std::vector<std::string> out;
-  if (!is_kernels)
-    name = "can0";
-  else if (!family.empty())
+  if (is_kernels && !family.empty())
     out.push_back(fmt::format(
         "`address --bitrate {} -n all -d {}` restarts all drives and switches {} with them; by hand:",
         bitrate, family, name));
   out.push_back(
       "change all nodes of the bus before any of them restarts: one with another bitrate disturbs the rest");
   out.push_back("then switch all of them off");
-  out.push_back(is_serial ? fmt::format("name the bus with its new bitrate: slcan:PORT@{}", bitrate)
-                          : fmt::format("`bus up {} --bitrate {}`", name, bitrate));
+  out.push_back(is_serial    ? fmt::format("name the bus with its new bitrate: slcan:PORT@{}", bitrate)
+                : is_kernels ? fmt::format("`bus up {} --bitrate {}`", name, bitrate)
+                             : fmt::format("set the bitrate of the bus behind {} to {}", name, bitrate));
   out.push_back("switch them on; `scan` shows who answers");
   return out;
 }

@@ -32,6 +32,19 @@ Explanation of_faults(const drive::Profile& profile, const std::vector<const dri
           fault_table(faults, chinese)};
 }
 
+/// A code that the family does not list, most often one of CiA 402.
+void add_parent_fault(const drive::Profile& profile, std::uint64_t code, bool chinese,
+                      std::vector<Explanation>& out) {
+  constexpr std::string_view kNote = "Not among the faults of {}: from CiA 402, or the family that it is based on.";
+  const auto* fault = profile.parent_fault(static_cast<std::uint16_t>(code));
+  if (fault == nullptr) return;
+  out.push_back(of_faults(profile, {fault}, chinese));
+  auto& topic = out.back().topic;
+  topic.note = fmt::format(kNote, profile.family);
+  topic.note_zh = fmt::format(fmt::runtime(report::chinese_word(kNote)), profile.family);
+  topic.line.clear();
+}
+
 /// As people write what a panel shows: `AL09` for `AL.09`.
 std::string without_signs(std::string_view panel) {
   std::string out(panel);
@@ -70,6 +83,7 @@ void add_faults(const TopicQuery& query, const drive::Profile& profile, bool by_
   } else {
     for (const auto* fault : of_code) out.push_back(of_faults(profile, {fault}, chinese));
   }
+  if (code && named.empty() && of_code.empty()) add_parent_fault(profile, *code, chinese, out);
 }
 
 void add_counted_faults(std::string_view number, const Library& library, bool chinese,

@@ -22,6 +22,14 @@ std::string name_of(const drive::Fault& fault, bool chinese) {
   return chinese && !fault.name_zh.empty() ? fault.name_zh : fault.name;
 }
 
+/// Of a code that the family does not list: what its parents say, most often CiA 402; else the class of CiA
+/// 301.
+std::string unlisted_words(const drive::Profile& profile, bool chinese, std::uint16_t code) {
+  const auto* fault = profile.parent_fault(code);
+  if (fault == nullptr) return canopen::emergency_text(code);
+  return fmt::format("{} (not among the faults of {})", name_of(*fault, chinese), profile.family);
+}
+
 }  // namespace
 
 report::Table fault_table(std::span<const drive::Fault* const> faults, bool chinese) {
@@ -93,7 +101,7 @@ std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16
                         const std::array<std::uint8_t, 5>& vendor) {
   if (profile == nullptr) return canopen::emergency_text(code);
   const auto found = drive::faults_of(profile->faults, profile->rules.emergency, code, vendor);
-  if (found.empty()) return canopen::emergency_text(code);
+  if (found.empty()) return unlisted_words(*profile, chinese, code);
   if (found.size() == 1) {
     const auto& fault = *found.front();
     return (fault.panel.empty() ? "" : fault.panel + " ") + name_of(fault, chinese);

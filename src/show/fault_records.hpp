@@ -22,7 +22,8 @@ report::Record fault_record(const drive::Fault& fault, bool chinese);
 inline constexpr std::size_t kFewFaults = 3;
 
 /// A code in words: `Er12-2 Overcurrent` where the code or the vendor bytes tell which alarm it is, `one of
-/// Err-9, Err-15, …` where several share it, else the class of CiA 301. `profile` may be null.
+/// Err-9, Err-15, …` where several share it, `Sensor (not among the faults of gsd600)` where CiA 402 alone
+/// lists it, else the class of CiA 301. `profile` may be null.
 std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16_t code,
                         const std::array<std::uint8_t, 5>& vendor = {});
 

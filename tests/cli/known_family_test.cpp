@@ -75,6 +75,17 @@ TEST_F(KnownFamily, AGuessThatWasTakenForReadsIsNoneForWritesInTheSameSession) {
   EXPECT_EQ(LineRunner(shell).run("param set Pn0202 30Hz -n 1"), 0) << all();
 }
 
+TEST_F(KnownFamily, AFamilyThatTheDriveContradictsIsToldAndNotRemembered) {
+  EXPECT_EQ(run("param get P0.03 -n 1 -d da200"), 0) << all();
+  EXPECT_TRUE(says("notice: node 1: not a da200: ")) << all();
+  EXPECT_EQ(files(), 0U);
+  Shell shell(console, options);
+  shell.stay_open(true);
+  EXPECT_EQ(LineRunner(shell).run("param get P0.03 -n 1 -d da200"), 0) << all();
+  EXPECT_EQ(LineRunner(shell).run("param get Pn0202 -n 1"), 0) << all();
+  EXPECT_TRUE(says("a guess, not proof")) << all();
+}
+
 TEST_F(KnownFamily, WhatWasSaidHoldsForTheDriveAndIsTold) {
   EXPECT_EQ(run("param get Pn0202 -n 1 -d gsd600"), 0) << all();
   EXPECT_FALSE(says("notice")) << all();

@@ -90,6 +90,20 @@ TEST(ParseLine, RefusesAnOptionWithoutItsValueAndASwitchWithOne) {
   EXPECT_EQ(line->arguments.text("--timeout"), "-5");
 }
 
+TEST(ParseLine, KnowsTheOptionsThatStandWithoutACommand) {
+  for (const auto& words : {Words{"-b", "can0", "--readonly"}, Words{"--dry-rum"}, Words{"-b", "can0", "-X"},
+                            Words{"--keep", "-b", "can0"}, Words{"-n3", "--nonsense"}})
+    EXPECT_FALSE(check_options_alone(words)) << words.back();
+  EXPECT_EQ(check_options_alone({"-b", "can0", "--dryrun"}).error().message, "there is no option '--dryrun'");
+  EXPECT_EQ(check_options_alone({"--dryrun"}).error().hint, "did you mean --dry-run?");
+  for (const auto& words :
+       {Words{}, Words{"-b", "can0", "-n3", "--read-only"}, Words{"--bus=can0", "-y"}, Words{"-d", "-x"}})
+    EXPECT_TRUE(check_options_alone(words));
+  // `help` behind them asks about none of them.
+  EXPECT_FALSE(parse_line({"-b", "can0", "--readonly", "help"}));
+  EXPECT_TRUE(parse_line({"help", "--for"}));
+}
+
 TEST(ParseLine, TakesOptionsBehindTwoDashesWhenEveryArgumentHasItsValue) {
   const auto line = parse_line({"jog", "--", "-30rpm", "--for", "2s", "-n", "1"});
   ASSERT_TRUE(line) << line.error().message;

@@ -16,6 +16,7 @@ from pty_terminal import Terminal, expect, failures
 
 servoctl = os.path.abspath(sys.argv[1])
 bus = f"local:held-{os.getpid()}"
+os.environ["SERVOCTL_PAGER"] = "cat"  # Long answers are held by the terminal alone.
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
 
 
@@ -88,7 +89,7 @@ def an_energised_drive(folder):
     held = Held(folder)
     t = held.terminal
     t.type("enable --yes\n")
-    t.see(r"ENERGISED, and stays so[^>]*> ")
+    t.see(r"ENERGISED while servoctl runs[^>]*> ")
     held.hold(True)
     for _ in range(5):
         run("nmt", "reset", "-n", "2", "--yes")
@@ -103,7 +104,7 @@ def an_energised_drive(folder):
     t.type("disable\n")
     t.see(r"disabled[^>]*> ")
     t.type("enable --yes\n")
-    t.see(r"ENERGISED, and stays so[^>]*> ")
+    t.see(r"ENERGISED while servoctl runs[^>]*> ")
     held.hold(True)
     run("nmt", "reset", "-n", "2", "--yes")
     os.kill(t.pid, signal.SIGTERM)

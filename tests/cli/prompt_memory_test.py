@@ -305,7 +305,7 @@ def mistyped_bus(state):
     t.type("sync start --period 10ms --yes\n")
     t.see(r"period \(ms\)[^>]*> ")
     t.type("enable --yes\n")
-    t.see(r"ENERGISED, and stays so[^>]*> ")
+    t.see(r"ENERGISED while servoctl runs[^>]*> ")
     t.type("bus foo\n")
     t.see(r"error: [^\n]*foo[^>]*" + cell + r" node 1 gsd600 \[operation enabled\??\]> ")
     answer = run("status", "-n", "1", "--json")

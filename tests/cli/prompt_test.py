@@ -153,7 +153,7 @@ with tempfile.TemporaryDirectory() as state:
         t.type("enable\n")
         t.see(r"\[y/N\] ")
         t.type("y\n")
-        t.see(r"ENERGISED, and stays so[^>]*> ")
+        t.see(r"ENERGISED while servoctl runs[^>]*> ")
         if ending == "exit":
             t.type("exit\n")
             t.see(r"node 1 was still energised; it has been stopped and disabled")

@@ -88,7 +88,8 @@ TEST(ManPage, IsWholeInChinese) {
   }
   const std::regex english("^[^\\\\.]*[a-z]{2,} [a-z]{2,}");
   for (const auto line : split(chinese, '\n'))
-    EXPECT_FALSE(std::regex_search(std::string(line), english)) << line;
+    EXPECT_FALSE(line.find("\\[u") == std::string_view::npos && std::regex_search(std::string(line), english))
+        << line;
 }
 
 TEST(ManPage, NamesBusesAsTheyAreOpened) {

@@ -67,6 +67,10 @@ TEST(Quantity, WithAUnitIsConvertedExactly) {
 TEST(Quantity, ThatDoesNotComeOutExactIsRefusedWithTheNearest) {
   expect_refused(hertz(), "40.05Hz", "'40.05Hz' is 400.5 steps of 0.1 Hz, not a whole number",
                  "the nearest value is 40 Hz");
+  expect_refused(hertz(), "0.04Hz", "'0.04Hz' is 0.4 steps of 0.1 Hz, not a whole number",
+                 "the nearest value is 0.1 Hz");
+  expect_refused(hertz(), "2500.04Hz", "'2500.04Hz' is 25000.4 steps of 0.1 Hz, not a whole number",
+                 "the nearest value is 2000 Hz");
 }
 
 TEST(Quantity, InAForeignUnitIsRefused) {

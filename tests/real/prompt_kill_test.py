@@ -111,7 +111,7 @@ def kill_once(number):
     what = f"{number}: {how} in '{line}'"
     prompt = Prompt()
     for node, family in ((1, families[0]), (2, families[1])):
-        prompt.say(f"enable -n {node} -d {family}" + (" --turn 10000" if family in ("da200", "ts") else ""), "ENERGISED, and stays so")
+        prompt.say(f"enable -n {node} -d {family}" + (" --turn 10000" if family in ("da200", "ts") else ""), "ENERGISED while servoctl runs")
     if not (energised(1) and energised(2)):
         fail(f"{what}: the drives are not enabled")
     os.write(prompt.fd, line.encode() + b"\r" if line else b"half a li")

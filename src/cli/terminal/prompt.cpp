@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <chrono>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -54,6 +53,7 @@ class Prompt {
                     .is_ascii = [this] { return console_->is_ascii(); }}),
         terminal_(console) {
     shell.stay_open(true);
+    shell.disable_at_end();
     if (!folder_.empty()) history_.load(folder_ / "history");
   }
   Prompt(const Prompt&) = delete;
