@@ -93,8 +93,8 @@ void tell_lines(Context& context, const std::filesystem::path& file, std::uint8_
                     [](const settings::Backup::Entry& entry) { return entry.bytes.has_value(); }));
   if (lines == values) return;
   context.notices.push_back(fmt::format(
-      "{} has lines for {} of {} values: not for those outside of their limits, which are comments, "
-      "and for entries of PDOs that are not in use; .json, .dcf and .csv have all",
+      "{} has lines for {} of {} values: node-ID, bitrate and what is outside of its limits are comments, "
+      "entries of PDOs that are not in use have none; JSON keeps all",
       file.string(), lines, values));
 }
 
