@@ -36,4 +36,12 @@ with tempfile.TemporaryDirectory() as folder:
     read = next((i for i, line in enumerate(frames) if "601#404160" in line), len(frames))
     before, after = (len([line for line in part if " 080#" in line]) for part in (frames[:read], frames[read:]))
     check(f"SYNC goes on before and behind a line: {before}, {after}", before > 50 and after > 20)
+
+    # A mistyped option is no option that is not there: the lines were to write nothing.
+    drive = ["-b", f"sim:gsd600@1?state={folder}/state", "-n", "1", "-d", "gsd600"]
+    for option in ("--readonly", "--dry-rum", "-X"):
+        done = subprocess.run([servoctl, *drive, option], env=env, input=b"param set Pn0214 46Hz --keep\n", capture_output=True)
+        check(f"{option} is refused: {done.returncode} {done.stderr}", done.returncode == 2 and b"there is no option" in done.stderr)
+    done = subprocess.run([servoctl, "param", "get", "Pn0214", *drive], env=env, capture_output=True)
+    check(f"and nothing was written: {done.stdout}", b"60 Hz" in done.stdout)
 finish()
