@@ -35,7 +35,8 @@ Explanation of_faults(const drive::Profile& profile, const std::vector<const dri
 /// A code that the family does not list, most often one of CiA 402.
 void add_parent_fault(const drive::Profile& profile, std::uint64_t code, bool chinese,
                       std::vector<Explanation>& out) {
-  constexpr std::string_view kNote = "Not among the faults of {}: from CiA 402, or the family that it is based on.";
+  constexpr std::string_view kNote =
+      "Not among the faults of {}: from CiA 402, or the family that it is based on.";
   const auto* fault = profile.parent_fault(static_cast<std::uint16_t>(code));
   if (fault == nullptr) return;
   out.push_back(of_faults(profile, {fault}, chinese));

@@ -51,7 +51,7 @@ def back(terminal, state=""):
     """What comes up to the next prompt, behind which nothing comes for a while: each key draws its line anew."""
     text = ""
     for _ in range(100):
-        more, found = shown_until(terminal, f"{state}(\\]> )", 10)
+        more, found = shown_until(terminal, f"{state}\\??(\\]> )", 10)
         text += more
         before = terminal.text
         terminal.read(0.3)
