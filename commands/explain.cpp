@@ -93,8 +93,8 @@ std::size_t count_before(std::span<const Explanation> all, Found found) {
 }
 
 /// What is called so is told in full; without such a thing rows in which the words stand. What else mentions
-/// them is listed.
-report::Value told(const Context& context, std::span<const Explanation> all) {
+/// them is listed, of several families with the names of these.
+report::Value told(const Context& context, std::span<const Explanation> all, bool families) {
   const auto width = page_width(context);
   const auto called = count_before(all, Found::row);
   const auto fitting = called > 0 ? called : count_before(all, Found::title);
@@ -116,7 +116,7 @@ report::Value told(const Context& context, std::span<const Explanation> all) {
       lines.insert(lines.end(),
                    {std::string(context.chinese ? report::chinese_word(kMentions) : kMentions), ""});
     auto list = in_full > 0 ? show::topic_names(all.subspan(in_full), context.chinese, width)
-                            : show::topic_list(all.subspan(in_full), context.chinese, width);
+                            : show::topic_list(all.subspan(in_full), context.chinese, width, families);
     lines.insert(lines.end(), std::make_move_iterator(list.begin()), std::make_move_iterator(list.end()));
   }
   return answer(std::move(lines), all);
@@ -141,14 +141,11 @@ Result<report::Value> all_topics(const Context& context, const Shelf& shelf) {
 tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf, std::string_view said) {
   const auto family = context.profile == nullptr ? std::string() : context.profile->family;
   auto hint = did_you_mean(said, show::explained_names(shelf.libraries));
-  if (hint.empty() && !family.empty())
+  if (hint.empty())
     hint =
-        "`explain` lists the topics; `param search WORD` and `fault list` look for words in parameters and faults";
-  if (family.empty()) {
-    std::string more = "-d FAMILY looks for words in what is known of it";
-    if (!hint.empty()) append(more, hint, "; ");
-    hint = std::move(more);
-  }
+        family.empty()
+            ? "`explain` lists the topics of the standard, `explain -d FAMILY` those of a family"
+            : "`explain` lists the topics; `param search WORD` and `fault list` look for words in parameters and faults";
   return fail(Errc::negative,
               family.empty() ? fmt::format("nothing is called '{}' or mentions it", said)
                              : fmt::format("nothing of {} is called '{}' or mentions it", family, said),
@@ -158,12 +155,18 @@ tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf,
 Result<report::Value> run_explain(Context& context, const Arguments& arguments) {
   std::string said;
   for (const auto& word : arguments.all("word")) append(said, word, " ");
-  const auto shelf = open_shelf(context);
+  auto shelf = open_shelf(context);
   if (!shelf) return fail(shelf.error());
   if (trim(said).empty()) return all_topics(context, *shelf);
-  const auto all = show::explanations(show::TopicQuery(said), shelf->libraries, context.chinese);
+  const show::TopicQuery query(said);
+  auto all = show::explanations(query, shelf->libraries, context.chinese);
+  const bool in_families = all.empty() && context.profile == nullptr;
+  if (in_families) {
+    for (auto& library : shelf->libraries) library.by_name_only = false;
+    all = show::explanations(query, shelf->libraries, context.chinese);
+  }
   if (all.empty()) return no_entry_found(context, *shelf, said);
-  return told(context, all);
+  return told(context, all, in_families);
 }
 
 constexpr Example kExplainExamples[] = {
@@ -184,7 +187,7 @@ const Command kExplain{
         "panel, LEDs, states, modes, homing methods (`explain homing 7`), bits, inputs and outputs (`explain DI "
         "28`). A number is that of a row as it is printed, a hexadecimal one with 0x, h or neither. Words that "
         "are no name are looked for in titles and texts. Without -d the standard and what has this very name in "
-        "any family; without a word the topics by kind. --lang zh takes the Chinese texts.",
+        "any family, else the words in all families; without a word the topics by kind. --lang zh takes the Chinese texts.",
     .parameters = kExplainParameters,
     .examples = kExplainExamples,
     .needs = Needs::nothing,

@@ -25,7 +25,8 @@ Result<std::vector<drive::Target>> wanted_parameters(const drive::Profile& profi
       const auto target = drive::resolve_panel(profile, word);
       if (!target) return fail(target.error());
       if (!od::readable(drive::meaning(*target, 0).access))
-        return fail(Errc::usage, fmt::format("{} is write-only", target->label()), "`param set` writes it");
+        return fail(Errc::usage, fmt::format("{} is write-only", target->in_sentence()),
+                    "`param set` writes it");
       out.push_back(*target);
       continue;
     }

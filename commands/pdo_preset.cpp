@@ -13,7 +13,7 @@ using namespace command;
 
 constexpr Parameter kPdoPresetParameters[] = {
     {.name = "preset",
-     .help = "name of the mapping, such as pp, pv or home; which there are depends on the family",
+     .help = "name of the mapping, such as pp, pv or home; `drives FAMILY` lists those of a family",
      .required = true},
     kKeepOption,
     kUnlockOption,

@@ -101,8 +101,7 @@ report::Table services_table(const traffic::ReplayPlan& plan) {
 }
 
 std::string failure_text(const Context& context, const traffic::ReplayFailure& failure) {
-  const auto label = drive::target_at(context.profile, failure.object).label();
-  const auto object = to_string(failure.object) + (label.empty() ? "" : " " + label);
+  const auto object = drive::target_at(context.profile, failure.object).in_sentence();
   if (!failure.abort_code)
     return fmt::format(fmt::runtime(failure.write ? "write of {} of node {} not answered"
                                                   : "read of {} of node {} not answered"),
@@ -143,8 +142,9 @@ report::Table failures_table(const Context& context, const std::vector<traffic::
                  {"answer"}};
   for (const auto& failure : failures) {
     const auto& abort = failure.abort_code;
+    const auto target = drive::target_at(context.profile, failure.object);
     out.rows.push_back({failure.node, to_string(failure.object), failure.object.index, failure.object.sub,
-                        report::text_or_null(drive::target_at(context.profile, failure.object).label()),
+                        report::text_or_null(context.chinese ? target.label_zh() : target.label()),
                         failure.write ? "write" : "read",
                         abort ? Value(fmt::format("0x{:08X}", *abort)) : Value(),
                         abort ? show::abort_words(context, *abort) : "none"});

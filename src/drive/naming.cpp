@@ -137,6 +137,11 @@ std::vector<const od::Parameter*> parameters_named(const Profile& profile, std::
   return out;
 }
 
+tl::unexpected<Error> without_object(const od::Parameter& parameter) {
+  return fail(Errc::usage, fmt::format("{} has no CANopen object", parameter.id + " " + parameter.name),
+              "it can be changed only on the panel; `param explain` describes it");
+}
+
 std::string full_name(const Profile& profile, const Target& target) {
   if (target.parameter != nullptr) return target.parameter->id;
   const auto* object = profile.dictionary.object(target.address.index);
@@ -176,6 +181,13 @@ bool Target::is_contradicted(std::string_view field) const {
 std::string Target::label_zh() const {
   if (parameter != nullptr && !parameter->name_zh.empty()) return parameter->id + " " + parameter->name_zh;
   return entry != nullptr && !entry->name_zh.empty() ? entry->name_zh : label();
+}
+
+std::string Target::in_sentence() const {
+  auto name = label();
+  if (parameter != nullptr || !unlisted.empty()) return name;
+  const auto where = to_string(address);
+  return name.empty() ? where : where + " " + name;
 }
 
 Target target_at(const Profile* profile, ObjectAddress address) {
@@ -241,15 +253,16 @@ Result<Target> resolve(const Profile* profile, std::string_view text) {
                 fmt::format("'{}' is not an object address, and names need a drive family", text),
                 "write an address such as 0x6041 or 0x6099:1, or add -d FAMILY (`drives` lists them)");
   if (const auto* parameter = profile->parameter(text)) {
-    if (!parameter->object)
-      return fail(Errc::usage, fmt::format("{} ({}) has no CANopen object", parameter->id, parameter->name),
-                  "it can be changed only on the panel; `param explain` describes it");
+    if (!parameter->object) return without_object(*parameter);
     return target_at(profile, *parameter->object);
   }
   if (auto target = by_rule(*profile, text)) return *target;
   auto found = named_in_english(*profile, text);
   if (found.empty()) found = named_in_chinese(*profile, text);
-  if (found.empty()) return unknown(*profile, text);
+  if (found.empty()) {
+    const auto named = parameters_named(*profile, text);
+    return named.empty() ? unknown(*profile, text) : without_object(*named.front());
+  }
   if (found.size() == 1) return found.front();
   std::vector<std::string> meanings;
   for (const auto& target : found) meanings.push_back(full_name(*profile, target));

@@ -132,7 +132,7 @@ Result<FaultReset> reset_fault(session::Session& session, const drive::Profile* 
                          : nullptr;
   if (gate != nullptr)
     error.hint += fmt::format("; this family resets faults only where {} is {}",
-                              drive::target_at(profile, gate->object).label(), gate->value);
+                              drive::target_at(profile, gate->object).in_sentence(), gate->value);
   return fail(std::move(error));
 }
 

@@ -72,9 +72,9 @@ class Homing {
     if (done && begun_) return motion_->stands_still(sample);
     if (begun_ || sample.time - started_at_ < kStart) return false;
     if (takes_present_position(*plan_) && motion_->stands_still(sample) && is_at_offset(sample)) return true;
-    return fail(motion_->error(Errc::negative,
-                               "does not start homing: \"homing attained\" is from an earlier run",
-                               "does the drive support this method (6098h)?"));
+    return fail(motion_->error(
+        Errc::negative, "does not start homing: \"homing attained\" is from an earlier run",
+        "does the drive support this method (6098h)? If it stands at its home, jog it away first"));
   }
 
   /// Where it stands is home now, so its position is the offset; its sign differs from drive to drive.

@@ -53,7 +53,7 @@ class ChineseValue {
   void put(Record& record) {
     for (auto& field : record) {
       if (field.show == Show::json) continue;
-      if (!is_own_word(field.key)) field.value = cell(std::move(field.value));
+      if (!is_own_word(field.key) && !is_own_word(field.title)) field.value = cell(std::move(field.value));
       field.title = word(field.title.empty() ? field.key : field.title);
     }
   }
@@ -96,10 +96,22 @@ class ChineseValue {
 Value chinese_value(Value value, const Names* names) { return ChineseValue(names).of(std::move(value)); }
 
 bool is_own_word(std::string_view key) {
-  static constexpr std::array<std::string_view, 15> kOwn{
-      "device_name", "hardware_version", "software_version", "panel", "object",   "time",
-      "tool",        "customer",         "machine",          "bus",   "operator", "axis",
-      "file",        "command",          "what is run"};
+  static constexpr std::array<std::string_view, 16> kOwn{"device_name",
+                                                         "hardware_version",
+                                                         "software_version",
+                                                         "panel",
+                                                         "object",
+                                                         "time",
+                                                         "tool",
+                                                         "customer",
+                                                         "machine",
+                                                         "bus",
+                                                         "operator",
+                                                         "axis",
+                                                         "file",
+                                                         "command",
+                                                         "what is run",
+                                                         "not in the manual"};
   return std::find(kOwn.begin(), kOwn.end(), key) != kOwn.end();
 }
 

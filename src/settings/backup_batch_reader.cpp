@@ -50,14 +50,14 @@ class BatchBackupReader {
     auto meaning = drive::meaning(*target, node_);
     if (type) meaning = drive::fitted(meaning, od::size_of(*type).value_or(0));
     if (!type && !meaning.size_known)
-      return refuse(fmt::format("the manual does not tell the length of {}", name_of(*target)),
+      return refuse(fmt::format("the manual does not tell the length of {}", target->in_sentence()),
                     "write it with a type: write OBJECT VALUE --type i32");
     if (drive::needs_bridge(meaning, text))
       return refuse(fmt::format("only the drive itself can convert '{}'", text), "write the raw number");
     const auto value = drive::parse_quantity(meaning, text);
     const auto bytes = value ? od::encode(meaning.type, *value) : Result<Bytes>(fail(value.error()));
     if (!bytes)
-      return refuse(fmt::format("{}: {}", name_of(*target), bytes.error().message), bytes.error().hint);
+      return refuse(fmt::format("{}: {}", target->in_sentence(), bytes.error().message), bytes.error().hint);
     Backup::Entry entry;
     entry.object = target->address;
     entry.type = meaning.type;

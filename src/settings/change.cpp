@@ -82,7 +82,7 @@ void add_bridge(show::Desk& desk, std::uint8_t node, const drive::Target& target
 
 tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target,
                             std::string_view separator = ": ") {
-  error.message = name_of(target) + std::string(separator) + error.message;
+  error.message = target.in_sentence() + std::string(separator) + error.message;
   return fail(show::located(std::move(error), node, target.address));
 }
 

@@ -23,7 +23,7 @@ struct Change {
   std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
 };
 
-/// Name of the object for a message: its label, else its address.
+/// Name of the object for a message that tells its address beside it: its label, else its address.
 std::string name_of(const drive::Target& target);
 
 /// The meaning of an object that holds these bytes, where the dictionary does not tell its type or its

@@ -116,7 +116,8 @@ Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) 
     auto reason = reason_to_ask(desk, change);
     if (reason.empty()) reason = register_reason(desk, change);
     if (reason.empty()) continue;
-    const auto question = fmt::format("Write {} on node {}? {}", name_of(change.target), change.node, reason);
+    const auto question =
+        fmt::format("Write {} on node {}? {}", change.target.in_sentence(), change.node, reason);
     if (const auto answer = desk.confirm(question); !answer) return answer;
   }
   return {};
@@ -140,7 +141,7 @@ std::string power_question(const show::Desk& desk, std::uint8_t node, const sess
   for (const auto& [object, parameter] : power_values(desk, present, wanted)) {
     const auto target = drive::target_at(desk.profile, object);
     const bool waits = drive::meaning(target, node).effect == od::Effect::restart;
-    append(waits ? after_restart : at_once, name_of(target));
+    append(waits ? after_restart : at_once, target.in_sentence());
   }
   std::string out;
   if (!at_once.empty())

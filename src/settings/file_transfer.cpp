@@ -32,13 +32,13 @@ report::Table new_table(bool kept) {
   return table;
 }
 
-report::List row(std::uint8_t node, const drive::Target& target, std::size_t bytes,
+report::List row(const show::Desk& desk, std::uint8_t node, const drive::Target& target, std::size_t bytes,
                  const std::filesystem::path& file, std::string state, Value error) {
   return {node,
           to_string(target.address),
           target.address.index,
           target.address.sub,
-          report::text_or_null(target.label()),
+          report::text_or_null(desk.chinese ? target.label_zh() : target.label()),
           bytes,
           file.string(),
           std::move(state),
@@ -56,7 +56,7 @@ Result<Value> read_to_file(show::Desk& desk, std::uint8_t node, const drive::Tar
   const auto written = write_file_atomically(file, std::string(data->begin(), data->end()));
   if (!written) return fail(written.error());
   auto table = new_table(false);
-  table.rows.push_back(row(node, target, data->size(), file, "read", {}));
+  table.rows.push_back(row(desk, node, target, data->size(), file, "read", {}));
   return Value(std::move(table));
 }
 
@@ -64,17 +64,18 @@ Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node
                                 const std::filesystem::path& file) {
   const auto meaning = drive::meaning(target, node);
   if (!od::writable(meaning.access))
-    return fail(Errc::usage, fmt::format("{} is read-only", name_of(target)), "it can be read, not written");
+    return fail(Errc::usage, fmt::format("{} is read-only", target.in_sentence()),
+                "it can be read, not written");
   const auto content = read_file(file, canopen::kMaxSdoDownload);
   if (!content) return fail(content.error());
   const auto size = meaning.type_known ? od::size_of(meaning.type) : std::nullopt;
   if (size && content->size() != *size)
-    return fail(Errc::usage, fmt::format("{} takes {} bytes, {} has {}", name_of(target), *size,
+    return fail(Errc::usage, fmt::format("{} takes {} bytes, {} has {}", target.in_sentence(), *size,
                                          file.string(), content->size()));
   Bytes data(content->begin(), content->end());
   if (const auto free = session::check_cob_id(profile, target.address, data, node); !free) {
     auto error = free.error();
-    error.message = fmt::format("{}: {}", name_of(target), error.message);
+    error.message = fmt::format("{}: {}", target.in_sentence(), error.message);
     return fail(std::move(error));
   }
   return Change{node, target, size ? meaning.type : od::DataType::domain, std::move(data)};
@@ -97,7 +98,7 @@ Result<Value> write_from_file(show::Desk& desk, std::span<const Change> wanted,
   table.json_only = std::none_of(written.begin(), written.end(), [](const auto& w) { return w.has_value(); });
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const std::string state(session::state_text(written[i], changes[i].target.address));
-    table.rows.push_back(row(changes[i].node, changes[i].target, changes[i].data.size(), file, state,
+    table.rows.push_back(row(desk, changes[i].node, changes[i].target, changes[i].data.size(), file, state,
                              written[i] ? Value() : show::error_record(written[i].error())));
     const auto kept = written[i] ? keeping.kept(changes[i]) : Value();
     table.rows.back().push_back(kept);

@@ -23,9 +23,10 @@ Value planned_frames(const show::Desk& desk, std::span<const Change> changes) {
   report::Table table;
   table.columns = {{"node"}, {"object"}, {"name"}, {"when", "", report::Show::json}, {"frame"}};
   for (std::size_t i = 0; i < changes.size(); ++i)
-    table.rows.push_back({changes[i].node, to_string(changes[i].target.address),
-                          report::text_or_null(changes[i].target.label()), Value(),
-                          show::frame_text(rehearsal.messages()[i])});
+    table.rows.push_back(
+        {changes[i].node, to_string(changes[i].target.address),
+         report::text_or_null(desk.chinese ? changes[i].target.label_zh() : changes[i].target.label()),
+         Value(), show::frame_text(rehearsal.messages()[i])});
   return table;
 }
 

@@ -33,7 +33,7 @@ Error flash_error(const drive::Profile* profile, std::uint8_t node,
   constexpr std::size_t kMostNamed = 6;
   std::string names;
   for (std::size_t i = 0; i < in_flash.size() && i < kMostNamed; ++i)
-    append(names, name_of(drive::target_at(profile, in_flash[i])));
+    append(names, drive::target_at(profile, in_flash[i]).in_sentence());
   if (in_flash.size() > kMostNamed) append(names, fmt::format("and {} more", in_flash.size() - kMostNamed));
   return drive_error(
       Errc::negative, node,

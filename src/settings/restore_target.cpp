@@ -112,7 +112,7 @@ bool RestoreTarget::is_out_of_reach(const Backup::Entry& entry) {
   if (!reached || !is_target(*desk_->profile, entry.object)) return !reached;
   desk_->notices.push_back(
       fmt::format("node {}: {} stays as it is: a drive that an input enables would follow it at once", node_,
-                  drive::target_at(desk_->profile, entry.object).label()));
+                  drive::target_at(desk_->profile, entry.object).in_sentence()));
   return true;
 }
 
@@ -211,7 +211,7 @@ tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std:
                                            std::string hint) const {
   const auto copy = copies_.find(object);
   const auto of = copy == copies_.end() ? "" : to_string(copy->second) + ": its stored copy ";
-  const auto name = of + name_of(drive::target_at(desk_->profile, object));
+  const auto name = of + drive::target_at(desk_->profile, object).in_sentence();
   auto error =
       fail(code, fmt::format("{}:{}: {}: {}", title_, line_of(object), name, what), std::move(hint)).value();
   error.node = node_;

@@ -249,19 +249,24 @@ Lines topic_names(std::span<const Explanation> explanations, bool chinese, std::
   return out;
 }
 
-Lines topic_list(std::span<const Explanation> explanations, bool chinese, std::size_t width) {
+Lines topic_list(std::span<const Explanation> explanations, bool chinese, std::size_t width,
+                 bool with_families) {
   constexpr std::size_t kWidestName = 24;
   const auto kinds = kinds_of(explanations);
   std::size_t left = 0;
-  for (const auto& each : explanations)
+  std::size_t family = 0;
+  for (const auto& each : explanations) {
     left = std::max(left, std::min(display_width(each.topic.name), kWidestName));
+    if (with_families) family = std::max(family, display_width(each.topic.family) + kGap);
+  }
   Lines out;
   for (const auto kind : kinds) {
     if (!out.empty()) out.emplace_back();
     out.emplace_back(word(kind, chinese));
     for (const auto& each : explanations) {
       if (each.topic.kind != kind) continue;
-      const auto head = "  " + pad_right(clip(each.topic.name, kWidestName), left + kGap);
+      auto head = "  " + pad_right(clip(each.topic.name, kWidestName), left + kGap);
+      if (with_families) head += pad_right(each.topic.family, family);
       add_hanging(head, in_language(each.topic.title, each.topic.title_zh, chinese), width, out);
     }
   }

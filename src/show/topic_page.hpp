@@ -14,9 +14,9 @@ namespace servoctl::show {
 /// One answer in full.
 std::vector<std::string> topic_page(const Explanation& explanation, bool chinese, std::size_t width);
 
-/// Topics by kind, a line each: name and title.
+/// Topics by kind, a line each: name, the family if it is asked for, and title.
 std::vector<std::string> topic_list(std::span<const Explanation> explanations, bool chinese,
-                                    std::size_t width);
+                                    std::size_t width, bool with_families = false);
 
 /// The names alone, those of a kind behind each other.
 std::vector<std::string> topic_names(std::span<const Explanation> explanations, bool chinese,

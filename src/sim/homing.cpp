@@ -9,6 +9,8 @@ namespace {
 
 /// The drive gives up after it (bit 13 of the statusword).
 constexpr Duration kLongest = std::chrono::seconds(50);
+/// A switch is looked at through the filter of its input, so that no run ends between two process data.
+constexpr Duration kFilterTime = std::chrono::milliseconds(10);
 /// Methods without motion take so long.
 constexpr Duration kSettleTime = std::chrono::milliseconds(300);
 /// Methods 17 to 30 are 1 to 14 without the index pulse.
@@ -111,7 +113,7 @@ void Homing::turn_or_fail() {
 }
 
 std::optional<double> Homing::look(const Track& track, double place, bool stands, TimePoint now) {
-  if (!is_running() || now < begins_) return std::nullopt;
+  if (!is_running() || now < begins_ + kFilterTime) return std::nullopt;
   if (phase_ == Phase::waiting) begin(track, place);
   if (now >= begins_ + kLongest) go(Phase::failed, 0);
   if (meets_limit(track, place)) turn_or_fail();

@@ -160,8 +160,7 @@ class Choice {
   }
 
   std::string name_of(ObjectAddress object) const {
-    const auto label = drive::target_at(profile_, object).label();
-    return label.empty() ? to_string(object) : label;
+    return drive::target_at(profile_, object).in_sentence();
   }
 
   /// Whom a frame that can move reaches; NMT to all and SYNC reach everyone.

@@ -155,7 +155,8 @@ TEST_F(BackupTest, WhatIsNoBackupIsReplacedOnlyAfterAQuestion) {
   std::filesystem::create_directories(folder / "cell");
   std::ofstream(folder / "cell" / "node-2.json") << "my notes\n";
   EXPECT_EQ(run("backup %cell -n 1,2"), 8) << console.out_text;
-  EXPECT_FALSE(std::filesystem::exists(folder / "cell" / "node-1.json")) << "asked before anything is written";
+  EXPECT_FALSE(std::filesystem::exists(folder / "cell" / "node-1.json"))
+      << "asked before anything is written";
   std::stringstream inside;
   inside << std::ifstream(folder / "cell" / "node-2.json").rdbuf();
   EXPECT_EQ(inside.str(), "my notes\n");

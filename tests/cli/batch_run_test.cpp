@@ -111,7 +111,7 @@ TEST_F(BatchTest, TellsAllErrorsBeforeTheFirstLineIsRun) {
   for (const auto* text :
        {":2: Pn0202 Position loop gain 1: 30000 is out of range", ":3: 'fly' is not a command",
         ":4: 'read' needs a node", ":5: ", ":6: ", ":7: write: there is no option '--colour'",
-        ":8: Statusword is read-only", ":9: wait: 'x' is not a time", ":10: '200' is not a node-ID",
+        ":8: 0x6041:0 Statusword is read-only", ":9: wait: 'x' is not a time", ":10: '200' is not a node-ID",
         ":11: 'run' is not allowed in a batch file", ":12: "})
     EXPECT_TRUE(told("standard input" + std::string(text))) << text << "\n" << console.err_text;
   EXPECT_FALSE(told(":1:"));

@@ -15,6 +15,7 @@
 #include "command/help_text.hpp"
 #include "command/prompt_words.hpp"
 #include "command/registry.hpp"
+#include "drive/naming.hpp"
 #include "drive/profile.hpp"
 #include "report/chinese_marks.hpp"
 #include "show/chinese_names.hpp"
@@ -108,6 +109,31 @@ TEST(Chinese, LeavesNoEnglishWordInWhatCompletionTells) {
 }
 
 constexpr const char* kFamilies[] = {"cia402", "da200", "dm", "gsd600", "sv2", "ts"};
+
+/// An error of `0x1A01:1` must not speak of RPDO1, whose entry has the same name in English.
+TEST(Chinese, CallsEachEntryAndParameterByItsOwnName) {
+  for (const auto* family : kFamilies) {
+    const auto profile = drive::load_profile(family, std::vector{golden_source() / "eds"});
+    ASSERT_TRUE(profile) << profile.error().message;
+    const auto names = show::chinese_names(*profile);
+    const auto look = [&](const drive::Target& target, const std::string& name, const std::string& chinese) {
+      if (const auto alone = names.find(name); alone != names.end() && !chinese.empty()) {
+        EXPECT_EQ(alone->second, chinese) << family << ' ' << to_string(target.address);
+      }
+      const auto told = names.find(target.in_sentence());
+      if (chinese.empty() || chinese == name) return;
+      ASSERT_NE(told, names.end()) << family << ' ' << target.in_sentence();
+      EXPECT_TRUE(told->second.ends_with(" " + chinese)) << told->second;
+    };
+    for (const auto& object : profile->dictionary.objects())
+      for (const auto& entry : object.entries) {
+        const auto target = drive::target_at(&*profile, entry.address);
+        if (target.parameter == nullptr) look(target, entry.name, entry.name_zh);
+      }
+    for (const auto& parameter : profile->parameters)
+      look({.parameter = &parameter}, parameter.name, parameter.name_zh);
+  }
+}
 
 /// Names, labels, notes, remedies and topics of every family.
 TEST(Chinese, LeavesNoEnglishWordInWhatIsToldOfTheFamilies) {

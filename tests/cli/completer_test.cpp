@@ -50,6 +50,10 @@ TEST_F(Completing, SaysBesideAWordWhatItIs) {
   EXPECT_EQ(hint("param get Pn021", "Pn0214"), "Speed loop gain 1");
   shell.defaults().chinese = true;
   EXPECT_EQ(hint("param get Pn021", "Pn0214"), "速度环增益 1");
+  EXPECT_EQ(hint("param get 速度环增", "速度环增益\\ 1"), "Pn0214");
+  EXPECT_EQ(hint("param set 免调整", "免调整刚性等级"), "Pn0271");
+  EXPECT_EQ(hint("read 状态", "状态字"), "0x6041");
+  EXPECT_EQ(hint("read ", "状态字"), "(none)") << "only for who begins so";
   EXPECT_EQ(hint("param ", "search"), "按词查找面板参数，中文或英文");
   shell.defaults().chinese = false;
   EXPECT_EQ(hint("param ", "search"), "Find panel parameters by words, in English or Chinese");

@@ -103,8 +103,9 @@ TEST(Resolve, RefusesAParameterThatHasNoObject) {
   const auto p = profile();
   const auto target = resolve(&p, "Xn9");
   ASSERT_FALSE(target);
-  EXPECT_EQ(target.error().message, "Xn0009 (Panel brightness) has no CANopen object");
+  EXPECT_EQ(target.error().message, "Xn0009 Panel brightness has no CANopen object");
   EXPECT_TRUE(resolve_parameter(p, "Xn9"));
+  EXPECT_EQ(resolve(&p, "panel brightness").error().message, target.error().message) << "by its name too";
 }
 
 TEST(CanonicalId, IsTheSameForAllSpellingsAndOnlyForThem) {
