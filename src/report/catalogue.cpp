@@ -1,8 +1,7 @@
 #include "report/catalogue.hpp"
 
 #include <algorithm>
-#include <map>
-#include <unordered_set>
+#include <utility>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -24,14 +23,17 @@ bool is_word_char(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
 }
 
-std::unordered_set<std::string> words_of(std::string_view text) {
-  std::unordered_set<std::string> out;
+/// Each once.
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> out;
   for (std::size_t begin = 0; begin < text.size();) {
     std::size_t end = begin;
     while (end < text.size() && is_word_char(text[end])) ++end;
-    if (end > begin) out.emplace(text.substr(begin, end - begin));
+    if (end > begin) out.push_back(text.substr(begin, end - begin));
     begin = std::max(end, begin + 1);
   }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
@@ -55,20 +57,28 @@ std::string_view bare_chinese(std::string_view text) {
   return text;
 }
 
+/// A format string as what it makes of no arguments.
+std::string without_places(std::string_view text) {
+  return text.find_first_of("{}") == std::string_view::npos ? std::string(text) : Phrase(text).with({});
+}
+
 }  // namespace
 
-Catalogue::Catalogue(const std::vector<PoEntry>& entries) {
-  std::unordered_map<std::string, std::size_t> known;
-  for (const auto& entry : entries) {
+Catalogue::Catalogue(std::vector<PoEntry> entries) {
+  std::unordered_map<std::string_view, std::size_t> known;
+  literals_.reserve(entries.size());
+  whole_.reserve(entries.size());
+  patterns_.reserve(entries.size());
+  for (auto& entry : entries) {
     if (entry.text.empty()) continue;
-    literals_.emplace(entry.id, entry.text);
-    const auto id = unbracketed(bare(entry.id).text, "(", ")");
-    const auto text = unbracketed(unbracketed(bare_chinese(entry.text), "（", "）"), "(", ")");
+    const auto& [english, chinese] = *literals_.try_emplace(std::move(entry.id), std::move(entry.text)).first;
+    const auto id = unbracketed(bare(english).text, "(", ")");
+    const auto text = unbracketed(unbracketed(bare_chinese(chinese), "（", "）"), "(", ")");
     Phrase phrase(id);
     if (phrase.places().empty()) {
-      whole_.emplace(phrase.pieces().front(), Phrase(text).with({}));
-      const bool before = entry.id.starts_with(' ');
-      const bool behind = entry.id.ends_with(' ');
+      whole_.emplace(phrase.pieces().front(), without_places(text));
+      const bool before = english.starts_with(' ');
+      const bool behind = english.ends_with(' ');
       if (phrase.letters() < kLeastOfPiece || before == behind) continue;
       // ` has no link`, `no unit answered on `: a name stands beside it.
       const auto place = [&](std::string_view words, std::string_view blank) {
@@ -76,7 +86,7 @@ Catalogue::Catalogue(const std::vector<PoEntry>& entries) {
                       : std::string(words) + std::string(blank) + "{}";
       };
       phrase = Phrase(place(id, " "));
-      patterns_.push_back({phrase, Phrase(place(text, " "))});
+      patterns_.push_back({std::move(phrase), place(text, " ")});
       for (const auto& word : words_of(id)) ++known[word];
       continue;
     }
@@ -87,13 +97,12 @@ Catalogue::Catalogue(const std::vector<PoEntry>& entries) {
             phrase.keep(static_cast<std::size_t>(*argument));
     if (phrase.letters() < kLeastLetters || phrase.words().empty()) continue;
     for (const auto& word : words_of(id)) ++known[word];
-    patterns_.push_back({std::move(phrase), Phrase(text)});
+    patterns_.push_back({std::move(phrase), std::string(text)});
   }
   for (std::size_t i = 0; i < patterns_.size(); ++i) {
     const auto words = patterns_[i].id.words();
-    const auto rarest = std::min_element(words.begin(), words.end(), [&](auto a, auto b) {
-      return known[std::string(a)] < known[std::string(b)];
-    });
+    const auto rarest =
+        std::min_element(words.begin(), words.end(), [&](auto a, auto b) { return known[a] < known[b]; });
     by_word_[std::string(*rarest)].push_back(i);
   }
 }
@@ -111,7 +120,7 @@ std::string_view Catalogue::literal(std::string_view text) const {
 std::vector<const Catalogue::Pattern*> Catalogue::candidates(std::string_view text) const {
   std::vector<const Pattern*> out;
   for (const auto& word : words_of(text))
-    if (const auto found = by_word_.find(word); found != by_word_.end())
+    if (const auto found = by_word_.find(std::string(word)); found != by_word_.end())
       for (const auto i : found->second) out.push_back(&patterns_[i]);
   // Of two with as many letters that with more marks, then the earlier one.
   std::sort(out.begin(), out.end(), [](const Pattern* a, const Pattern* b) {

@@ -18,15 +18,15 @@ using Names = std::unordered_map<std::string, std::string>;
 /// so that several threads may ask it.
 class Catalogue {
  public:
-  /// Two of a kind of text, one with placeholders and one without.
+  /// A text with placeholders, and what it is in the other language: a Phrase once it is needed.
   struct Pattern {
     Phrase id;
-    Phrase text;
+    std::string text;
   };
 
   /// Entries without a translation are left out. Blanks and punctuation at both ends do not count: a text is
   /// put together from parts that begin or end with them.
-  explicit Catalogue(const std::vector<PoEntry>& entries);
+  explicit Catalogue(std::vector<PoEntry> entries);
 
   /// The text in the other language, as far as there is something for it: the whole of it, else what it says
   /// around names, numbers and other texts, which are put into the other language in turn, else part by part

@@ -65,6 +65,10 @@ bool begins_like_number(std::string_view text) {
 
 Phrase::Phrase(std::string_view format) {
   for (std::size_t i = 0; i < format.size(); ++i) {
+    const auto begin = i;
+    while (i < format.size() && format[i] != '{' && format[i] != '}') ++i;
+    pieces_.back() += format.substr(begin, i - begin);
+    if (i == format.size()) break;
     const char c = format[i];
     const bool doubled = (c == '{' || c == '}') && i + 1 < format.size() && format[i + 1] == c;
     const auto size = c == '{' && !doubled ? place_end(format.substr(i)) : 0;

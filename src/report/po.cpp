@@ -73,6 +73,10 @@ class PoReader {
     if (quoted.size() < 2 || quoted.front() != '"' || quoted.back() != '"')
       return wrong("a string ends with \"");
     const auto inner = quoted.substr(1, quoted.size() - 2);
+    if (inner.find('"') == std::string_view::npos && inner.find('\\') == std::string_view::npos) {
+      into += inner;
+      return {};
+    }
     for (std::size_t i = 0; i < inner.size(); ++i) {
       if (inner[i] == '"') return wrong("a quote within a string is written \\\"");
       if (inner[i] != '\\') {
