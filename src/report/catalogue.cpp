@@ -62,6 +62,14 @@ std::string without_places(std::string_view text) {
   return text.find_first_of("{}") == std::string_view::npos ? std::string(text) : Phrase(text).with({});
 }
 
+void keep_names(const std::vector<std::string>& remarks, Phrase& phrase) {
+  for (const auto& remark : remarks)
+    if (remark.starts_with(kNames))
+      for (const auto name : split(std::string_view(remark).substr(kNames.size()), ','))
+        if (const auto argument = parse_digits(trim(name), 10))
+          phrase.keep(static_cast<std::size_t>(*argument));
+}
+
 }  // namespace
 
 Catalogue::Catalogue(std::vector<PoEntry> entries) {
@@ -90,11 +98,7 @@ Catalogue::Catalogue(std::vector<PoEntry> entries) {
       for (const auto& word : words_of(id)) ++known[word];
       continue;
     }
-    for (const auto& remark : entry.remarks)
-      if (remark.starts_with(kNames))
-        for (const auto name : split(std::string_view(remark).substr(kNames.size()), ','))
-          if (const auto argument = parse_digits(trim(name), 10))
-            phrase.keep(static_cast<std::size_t>(*argument));
+    keep_names(entry.remarks, phrase);
     if (phrase.letters() < kLeastLetters || phrase.words().empty()) continue;
     for (const auto& word : words_of(id)) ++known[word];
     patterns_.push_back({std::move(phrase), std::string(text)});

@@ -281,11 +281,9 @@ std::string Catalogue::translated(std::string_view text, const Names* names) con
 
 const Catalogue& chinese() {
   // Never taken down: that would take a millisecond of each call of the program.
-  static const auto* const catalogue = [] {
-    // A file that cannot be read is one that no test has seen: the texts stay English.
-    auto entries = parse_po(zh_po(), "zh.po");
-    return new Catalogue(entries ? std::move(*entries) : std::vector<PoEntry>());
-  }();
+  // A file that cannot be read is one that no test has seen: the texts stay English.
+  static const auto* const catalogue =
+      new Catalogue(parse_po(zh_po(), "zh.po").value_or(std::vector<PoEntry>()));
   return *catalogue;
 }
 
