@@ -77,7 +77,7 @@ Error unconfirmed(const Before& before, NmtCommand command, const Heartbeats& he
         "no boot-up message: it may have restarted with another node-ID or bitrate; `scan` shows who answers";
   else if (std::find(silent.begin(), silent.end(), before.node) != silent.end())
     error.hint =
-        fmt::format("the node sends no heartbeat: `write 0x1017 500 -n {}` switches it on", before.node);
+        fmt::format("the node sends no heartbeat: `heartbeat set 500ms -n {}` switches it on", before.node);
   else if (watch.heartbeats(before.node) > before.heartbeats)
     error.hint = "its heartbeats still show another state";
   else

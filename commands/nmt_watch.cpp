@@ -181,7 +181,7 @@ class Log {
       what = period == 0 ? "sends no heartbeat"
                          : fmt::format("no heartbeat came, although 1017h is {} ms", period);
       if (period == 0)
-        hint = fmt::format("`write 0x1017 500 -n {}` switches it on; or {}", row.node, std::move(hint));
+        hint = fmt::format("`heartbeat set 500ms -n {}` switches it on; or {}", row.node, std::move(hint));
     } else if (answered(row)) {
       const auto code = row.told->error().abort_code;
       what = code == kNoSuchObject || code == kNoSuchSubindex
