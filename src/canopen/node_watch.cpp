@@ -41,7 +41,7 @@ void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
     on_error_control(*message, now);
     update_deadline();
   }
-  if (writes_heartbeat_time(frame)) forget_period(watched_node_of(frame));  // Another master's.
+  on_sent(frame);  // By another master.
 }
 
 void NodeWatch::on_sent(const can::Frame& frame) {

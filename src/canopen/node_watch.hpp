@@ -51,7 +51,8 @@ struct NodeEvent {
 class NodeWatch {
  public:
   void on_frame(const can::Frame& frame, TimePoint now);
-  /// A frame that this program sends. Whoever writes 1017h gives the node another period: it is learned anew.
+  /// A frame that this program sends, or another master. Whoever writes 1017h gives the node another period,
+  /// and an answer to a question by node guarding is no heartbeat: the period is learned anew.
   void on_sent(const can::Frame& frame);
   void on_time(TimePoint now);
   TimePoint deadline() const { return deadline_; }

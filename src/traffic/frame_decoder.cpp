@@ -173,6 +173,7 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
   if (frame.remote) {
     out_.service = "guarding";
     out_.text = word("node guarding request");
+    asked_.set(*out_.node);
     return;
   }
   const auto message = canopen::parse_error_control(frame);
@@ -189,10 +190,12 @@ void FrameDecoder::decode_error_control(const can::Frame& frame) {
     return;
   }
   const bool toggle = (frame.data[0] & 0x80U) != 0;
+  const bool answers = toggle || asked_.test(*out_.node);
+  asked_.reset(*out_.node);
   out_.service = "heartbeat";
   const auto state = word(canopen::name(message->state));
   out_.text =
-      toggle ? report::told(options_.chinese, "{} (answer to node guarding)", state) : std::string(state);
+      answers ? report::told(options_.chinese, "{} (answer to node guarding)", state) : std::string(state);
   if (!options_.fields) return;
   fields_.member("state", canopen::name(message->state));
   fields_.member("toggle", toggle);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <initializer_list>
 #include <optional>
@@ -87,6 +88,8 @@ class FrameDecoder {
   std::array<canopen::SdoObserver, 128> channels_;
   std::array<std::optional<Pending>, 128> pending_;
   ModesSeen modes_;
+  std::bitset<128>
+      asked_;  ///< Nodes that were asked for their state by a remote frame, and have not answered.
 };
 
 }  // namespace servoctl::traffic

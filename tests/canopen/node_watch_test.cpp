@@ -256,6 +256,21 @@ TEST_F(NodeWatchTest, LearnsThePeriodAnewWhenSomebodyWrites1017h) {
   EXPECT_EQ(watch.deadline(), now + 1500ms);
 }
 
+/// Every second one has no toggle bit, and looks as a heartbeat does.
+TEST_F(NodeWatchTest, TakesAnswersToTheGuardingOfAnotherMasterForNoHeartbeats) {
+  for (int i = 0; i < 6; ++i) {
+    hear("705#R1", 200ms);
+    hear(i % 2 == 0 ? "705#7F" : "705#FF", 1ms);
+  }
+  EXPECT_EQ(watch.deadline(), kNever);
+  watch.on_time(now + 10s);
+  EXPECT_EQ(kinds(), std::vector<std::size_t>{});
+  EXPECT_EQ(watch.state(5), NmtState::pre_operational);
+  for (int i = 0; i < 3; ++i) hear("705#7F", 100ms);
+  watch.on_time(now + 1s);
+  EXPECT_EQ(kinds(), std::vector<std::size_t>{kLost}) << "heartbeats that begin afterwards";
+}
+
 TEST_F(NodeWatchTest, CountsAnEmergencyThatANodeRepeats) {
   for (const auto* text : {"083#00FF810000000000", "084#00FF810000000000", "083#00FF810000000000",
                            "083#00FF810000000000", "083#00FF810000000001", "083#00FF810000000000"})
