@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -116,5 +117,21 @@ class ScriptedAdapter {
   std::atomic<bool> ends_ = false;
   std::thread worker_;
 };
+
+inline Frame slcan_frame(const char* text) { return parse_frame(text).value(); }
+
+/// Null where it is not opened, which fails the test.
+inline std::unique_ptr<Bus> open_at(const ScriptedAdapter& adapter) {
+  auto bus = open_slcan(adapter.place());
+  EXPECT_TRUE(bus) << bus.error().message;
+  return bus ? std::move(*bus) : nullptr;
+}
+
+/// What comes within two seconds.
+inline std::optional<Frame> next_frame(Bus& bus) {
+  const auto frame = bus.receive(bus.now() + std::chrono::seconds(2));
+  EXPECT_TRUE(frame) << frame.error().message;
+  return frame ? *frame : std::nullopt;
+}
 
 }  // namespace servoctl::can

@@ -5,7 +5,6 @@
 #include <sys/file.h>
 
 #include <algorithm>
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 
@@ -18,20 +17,6 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-Frame slcan_frame(const char* text) { return parse_frame(text).value(); }
-
-std::unique_ptr<Bus> open_at(const ScriptedAdapter& adapter) {
-  auto bus = open_slcan(adapter.place());
-  EXPECT_TRUE(bus) << bus.error().message;
-  return bus ? std::move(*bus) : nullptr;
-}
-
-std::optional<Frame> next_frame(Bus& bus) {
-  const auto frame = bus.receive(bus.now() + seconds(2));
-  EXPECT_TRUE(frame) << frame.error().message;
-  return frame ? *frame : std::nullopt;
-}
 
 std::string refusal(const std::string& place) {
   const auto bus = open_slcan(place);
@@ -200,79 +185,6 @@ TEST(Slcan, DamagedLinesAreLeftOutAndTold) {
   ASSERT_EQ(notices.size(), 1U);
   EXPECT_NE(notices.front().find("1 damaged line was left out"), std::string::npos);
   EXPECT_TRUE(bus->take_notices().empty());
-}
-
-TEST(Slcan, AnAdapterThatIsPulledInTheMiddleOfALineIsToldAtOnce) {
-  ScriptedAdapter adapter;
-  const auto bus = open_at(adapter);
-  adapter.say("t5811AA\rt58184300");
-  EXPECT_EQ(next_frame(*bus), slcan_frame("581#AA"));
-  adapter.unplug();
-  const auto begin = bus->now();
-  const auto lost = bus->receive(bus->now() + seconds(5));
-  ASSERT_FALSE(lost);
-  EXPECT_EQ(lost.error().code, Errc::bus);
-  EXPECT_NE(lost.error().message.find(adapter.path() + " is gone"), std::string::npos);
-  EXPECT_LT(bus->now() - begin, seconds(1));
-  EXPECT_FALSE(bus->send(slcan_frame("601#00")));
-  EXPECT_EQ(bus->poll_fd(), -1) << "a port that is held keeps its number";
-}
-
-TEST(Slcan, AnOpeningThatTakesLongerThanARecoveryGoesOnWithTheNextOne) {
-  const auto link = std::filesystem::path(testing::TempDir()) / "slcan-opens-late";
-  const auto point_to = [&](const std::string& path) {
-    std::filesystem::remove(link);
-    std::filesystem::create_symlink(path, link);
-  };
-  ScriptedAdapter before;
-  point_to(before.path());
-  auto bus = open_slcan(link.string() + "@1M");
-  ASSERT_TRUE(bus);
-  before.unplug();
-  EXPECT_FALSE((*bus)->receive((*bus)->now() + seconds(1)));
-  std::atomic<int> opened = 0;
-  ScriptedAdapter after([&](const std::string& command) {
-    if (command == "C") nap(milliseconds(200));
-    if (command == "O") ++opened;
-    return ScriptedAdapter::good(command);
-  });
-  point_to(after.path());
-  Result<void> back = fail(Errc::bus, "");
-  int tries = 0;
-  for (; tries < 200 && !back; ++tries) {
-    const auto begin = (*bus)->now();
-    back = (*bus)->recover(begin + milliseconds(20));
-    EXPECT_LT((*bus)->now() - begin, milliseconds(250)) << "it ends by its deadline";
-    if (!back) EXPECT_FALSE((*bus)->send(slcan_frame("601#00"))) << "it is not open yet";
-  }
-  EXPECT_TRUE(back);
-  EXPECT_GT(tries, 3);
-  EXPECT_EQ(opened, 1);
-  EXPECT_TRUE((*bus)->send(slcan_frame("601#00")));
-}
-
-TEST(Slcan, AnAdapterThatComesBackIsOpenedAnew) {
-  const auto link = std::filesystem::path(testing::TempDir()) / "slcan-comes-back";
-  const auto point_to = [&](const std::string& path) {
-    std::filesystem::remove(link);
-    std::filesystem::create_symlink(path, link);
-  };
-  ScriptedAdapter before;
-  point_to(before.path());
-  auto bus = open_slcan(link.string() + "@1M");
-  ASSERT_TRUE(bus);
-  before.unplug();
-  std::filesystem::remove(link);
-  EXPECT_FALSE((*bus)->receive((*bus)->now() + seconds(1)));
-  EXPECT_FALSE((*bus)->recover((*bus)->now() + milliseconds(50)));
-  ScriptedAdapter after;
-  point_to(after.path());
-  EXPECT_TRUE((*bus)->recover((*bus)->now() + seconds(1)));
-  EXPECT_TRUE(after.hears("S8"));
-  EXPECT_TRUE((*bus)->send(slcan_frame("601#00")));
-  after.say("t5811AA\r");
-  EXPECT_EQ(next_frame(**bus), slcan_frame("581#AA"));
-  std::filesystem::remove(link);
 }
 
 TEST(Slcan, OnePortIsForOneProgram) {
