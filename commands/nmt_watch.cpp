@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/number.hpp"
+#include "canopen/sdo_abort.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "drive/standard_objects.hpp"
@@ -21,9 +22,6 @@ using report::Value;
 using session::NodeEvent;
 
 constexpr Duration kSlice = std::chrono::milliseconds(100);
-
-constexpr std::uint32_t kNoSuchObject = 0x0602'0000;    ///< CiA 301, table of SDO abort codes.
-constexpr std::uint32_t kNoSuchSubindex = 0x0609'0011;  ///< The same.
 
 constexpr Parameter kNmtWatchParameters[] = {
     kForOption,
@@ -184,7 +182,7 @@ class Log {
         hint = fmt::format("`heartbeat set 500ms -n {}` switches it on; or {}", row.node, std::move(hint));
     } else if (answered(row)) {
       const auto code = row.told->error().abort_code;
-      what = code == kNoSuchObject || code == kNoSuchSubindex
+      what = code == canopen::sdo_abort::kNoObject || code == canopen::sdo_abort::kNoSubIndex
                  ? std::string("no heartbeat came, and it has no 1017h to enable one")
                  : "no heartbeat came, and 1017h could not be read: " + row.told->error().message;
     } else if (heard(row)) {

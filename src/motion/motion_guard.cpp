@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/operation_mode.hpp"
 
@@ -15,8 +16,6 @@ constexpr std::uint8_t kQuickStop = 0x02;
 constexpr std::uint8_t kDisableVoltage = 0x00;
 
 constexpr std::uint32_t kLife = 5;  ///< Guard times in the life time.
-
-constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
 
 }  // namespace
 
@@ -86,7 +85,7 @@ Result<void> MotionGuard::neutral_targets(std::optional<ObjectAddress> except) {
     const auto size = od::size_of(units_->meaning(object).type).value_or(4);
     const auto done = change(object, Bytes(size, 0));
     // The dictionary may promise more than the drive has.
-    if (!done && done.error().abort_code != kNoSuchObject) return done;
+    if (!done && done.error().abort_code != canopen::sdo_abort::kNoObject) return done;
   }
   if (!units_->has(objects::kTargetPosition) || !units_->has(objects::kPositionActual)) return {};
   const auto here = session_->upload(node_, objects::kPositionActual);

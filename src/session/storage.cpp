@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/option_scope.hpp"
 #include "session/setting_write.hpp"
@@ -46,8 +47,7 @@ bool stores_all(const drive::Profile& profile) {
 /// One refusal tells nothing of the other ways; the manual was asked, too.
 Result<void> with_manual(Result<void> done, const drive::Profile* profile, std::uint16_t index,
                          std::string_view hint) {
-  constexpr std::uint32_t kNoObject = 0x06020000;
-  if (done || profile == nullptr || done.error().abort_code != kNoObject) return done;
+  if (done || profile == nullptr || done.error().abort_code != canopen::sdo_abort::kNoObject) return done;
   const ObjectAddress count{index, 0};
   const ObjectAddress all{index, 1};
   if (profile->dictionary.find(count) == nullptr && profile->dictionary.find(all) == nullptr)
@@ -251,9 +251,13 @@ Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
       wrong = std::move(error);
   };
   if (keep_ && has_switch && rehearsal_ == nullptr) tell_wear(writes);
-  if (keep_ && all_written && !has_switch)
-    note(store_all(), "the values are written, but storing them failed",
-         "a power cycle shows whether the drive keeps them by itself; `store` tries again");
+  if (keep_ && all_written && !has_switch) {
+    const auto stored = store_all();
+    // What has no object for it stores nothing at the next try either.
+    const bool never = !stored && stored.error().abort_code == canopen::sdo_abort::kNoObject;
+    note(stored, "the values are written, but storing them failed",
+         never ? "" : "a power cycle shows whether the drive keeps them by itself; `store` tries again");
+  }
   note(put_back(password_), "the password could not be withdrawn: the drive may still be unlocked", {});
   // A switch that chose the RAM stays there: the next trial wants it, and writing it back wears the flash.
   const bool chosen = memory_.has_value();

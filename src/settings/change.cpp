@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "canopen/sdo_abort.hpp"
 #include "session/cob_id_check.hpp"
 #include "session/measure.hpp"
 #include "settings/energising.hpp"
@@ -17,8 +18,6 @@ namespace {
 using report::Show;
 using report::Value;
 
-constexpr std::uint32_t kNoSuchObject = 0x0602'0000;  ///< CiA 301, table of SDO abort codes.
-
 /// An object whose length no manual tells is read to learn it: a write of another length would be refused or
 /// worse.
 Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const drive::Target& target,
@@ -27,7 +26,7 @@ Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const dri
   if (!bytes) {
     auto error = bytes.error();
     error.message = "the object's size is not known, and reading it failed: " + error.message;
-    const bool absent = error.abort_code == kNoSuchObject;
+    const bool absent = error.abort_code == canopen::sdo_abort::kNoObject;
     error.hint = desk.profile == nullptr ? "give the type: --type i32, or the drive family: -d FAMILY"
                  : absent ? fmt::format("`objects -d {}` lists the objects it has", desk.profile->family)
                           : std::string("say the type: --type i32");
