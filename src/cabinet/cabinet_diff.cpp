@@ -109,10 +109,9 @@ class CabinetDifference {
     for (const auto& setting : axis.parameters) {
       const auto target =
           profile ? drive::resolve(*profile, setting.name) : Result<drive::Target>(fail(profile.error()));
-      const auto label = target ? target->label() : std::string();
-      const auto name = !target ? setting.name : label.empty() ? to_string(target->address) : label;
+      const auto name = target ? target->in_sentence() : setting.name;
       out[name] = target ? plain(axis, *target, setting.value) : setting.value;
-      if (desk_->chinese && target && !label.empty()) chinese_[name] = target->label_zh();
+      if (desk_->chinese && target) chinese_[name] = target->in_sentence_zh();
     }
     return out;
   }

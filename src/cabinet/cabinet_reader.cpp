@@ -276,9 +276,11 @@ Result<Cabinet> parse_cabinet(std::string_view toml, const std::filesystem::path
   if (parsed) return CabinetReader(file).read(parsed.table());
   const auto at = parsed.error().source().begin;
   auto error = file_error(name, at.line, at.column, parsed.error().description());
-  error.hint = parsed.error().description().find("redefine") != std::string_view::npos
-                   ? "each key, and each name in brackets, stands once"
-                   : "one key = value a line, and what is no number in quotes: family = \"gsd600\"";
+  error.hint =
+      parsed.error().description().find("redefine") != std::string_view::npos
+          ? "each key, and each name in brackets, stands once"
+          : "one key = value a line, and what is no number in quotes, keys with other letters than A to "
+            "Z too: family = \"gsd600\"";
   return fail(std::move(error));
 }
 

@@ -86,9 +86,7 @@ std::string name_of_node(const Context& context, std::uint8_t node) {
 
 /// A panel parameter goes by its number; that of an object may have been typed, and says little.
 std::string shown_name(const drive::Target& target, const std::string& typed) {
-  if (target.parameter != nullptr) return typed;
-  const auto name = target.label();
-  return to_string(target.address) + (name.empty() ? "" : " " + name);
+  return target.parameter != nullptr ? typed : target.in_sentence();
 }
 
 }  // namespace

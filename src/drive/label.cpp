@@ -1,4 +1,5 @@
 // The words that stand for values.
+#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/number.hpp"
@@ -51,6 +52,12 @@ const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value) {
         !std::holds_alternative<std::string>(value) && !std::holds_alternative<Bytes>(value))
       return &label;
   return nullptr;
+}
+
+std::string labels_text(const std::vector<od::EnumLabel>& labels) {
+  std::string out;
+  for (const auto& label : labels) append(out, fmt::format("{} {}", label.value, label.label));
+  return out;
 }
 
 }  // namespace servoctl::drive

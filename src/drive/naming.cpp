@@ -60,7 +60,9 @@ tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
   const auto known = names(profile);
   auto hint = is_ascii(text) ? did_you_mean(lower(text), known) : near_in_chinese(profile, text, true);
   if (hint.empty())
-    hint = "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
+    hint = profile.parameters.empty()
+               ? "`objects PATTERN` finds names; an index is written 0x6041 or 6041h"
+               : "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
   return fail(Errc::usage, fmt::format("'{}' is not an object or parameter of {}", text, profile.family),
               std::move(hint));
 }
@@ -183,12 +185,20 @@ std::string Target::label_zh() const {
   return entry != nullptr && !entry->name_zh.empty() ? entry->name_zh : label();
 }
 
-std::string Target::in_sentence() const {
-  auto name = label();
-  if (parameter != nullptr || !unlisted.empty()) return name;
-  const auto where = to_string(address);
-  return name.empty() ? where : where + " " + name;
+namespace {
+
+/// Panel numbers tell the place themselves.
+std::string placed(const Target& target, std::string label) {
+  if (target.parameter != nullptr || !target.unlisted.empty()) return label;
+  const auto where = to_string(target.address);
+  return label.empty() ? where : where + " " + label;
 }
+
+}  // namespace
+
+std::string Target::in_sentence() const { return placed(*this, label()); }
+
+std::string Target::in_sentence_zh() const { return placed(*this, label_zh()); }
 
 Target target_at(const Profile* profile, ObjectAddress address) {
   Target out;

@@ -24,6 +24,7 @@ struct Target {
   std::string label_zh() const;
   /// How a sentence names it: `Pn0202 Auto tuning mode`, `0x6041:0 Statusword`, or the address alone.
   std::string in_sentence() const;
+  std::string in_sentence_zh() const;
   /// The manual states more than one value of a field of the parameter (`scale`), see od::Parameter::doubts.
   bool is_contradicted(std::string_view field) const;
 };

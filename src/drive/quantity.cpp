@@ -99,15 +99,6 @@ int compare(const Meaning& meaning, const od::Value& a, const od::Value& b) {
   return x < y ? -1 : x > y ? 1 : 0;
 }
 
-std::string labels_text(const Meaning& meaning) {
-  std::string out;
-  for (const auto& label : *meaning.labels) {
-    if (!out.empty()) out += ", ";
-    out += fmt::format("{} {}", label.value, label.label);
-  }
-  return out;
-}
-
 /// `10H` is ten henry where the object's unit is H, and 16 everywhere else.
 bool ends_in_own_unit(const Meaning& meaning, std::string_view text) {
   return equals_nocase(meaning.unit, "h") && !text.empty() && (text.back() == 'h' || text.back() == 'H') &&
@@ -203,7 +194,7 @@ Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
   if (!low && !high && !is_too_little(meaning, value)) return {};
   std::string hint;
   if (meaning.labels != nullptr)
-    hint = "values: " + labels_text(meaning);
+    hint = "values: " + labels_text(*meaning.labels);
   else if (meaning.scale != 1)
     hint = fmt::format("one step is {} {}", plain_number(meaning.scale, 6), meaning.unit);
   else if (is_too_little(meaning, value))
@@ -233,7 +224,7 @@ Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps
   const auto plain = od::parse_value(meaning.type, text);
   if (!plain && meaning.labels != nullptr && !parse_integer(text))
     return fail(Errc::usage, fmt::format("'{}' is not a value of this object", text),
-                "values: " + labels_text(meaning));
+                "values: " + labels_text(*meaning.labels));
   if (!plain) return fail(plain.error());
   return Quantity{*plain, {}};
 }

@@ -111,6 +111,9 @@ const od::EnumLabel* find_label(const Meaning& meaning, std::string_view text);
 /// The label of the value, or null.
 const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value);
 
+/// All of them: `0 Off, 1 On`.
+std::string labels_text(const std::vector<od::EnumLabel>& labels);
+
 /// `1..5000`, `at least 0`, `0, or at least 1000`, or empty when no limit is known; raw numbers.
 std::string range_text(const Meaning& meaning);
 

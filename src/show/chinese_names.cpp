@@ -1,8 +1,12 @@
 #include "show/chinese_names.hpp"
 
+#include <fmt/format.h>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "base/text.hpp"
+#include "drive/quantity.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -11,8 +15,15 @@ void put(const std::string& name, const std::string& name_zh, report::Names& out
   if (!name.empty() && !name_zh.empty() && name != name_zh) out.emplace(name, name_zh);
 }
 
+/// Each of them, and all of them as drive::labels_text() lists them.
 void put(const std::vector<od::EnumLabel>& labels, report::Names& out) {
-  for (const auto& label : labels) put(label.label, label.label_zh, out);
+  std::string all_zh;
+  for (const auto& label : labels) {
+    put(label.label, label.label_zh, out);
+    append(all_zh, fmt::format("{} {}", label.value, label.label_zh.empty() ? label.label : label.label_zh),
+           "，");
+  }
+  if (!labels.empty()) put(drive::labels_text(labels), all_zh, out);
 }
 
 /// Names alone, and behind what a sentence puts before them (drive::Target::in_sentence()). One that stands
