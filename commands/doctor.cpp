@@ -46,6 +46,9 @@ std::vector<std::string> urls_of(const Context& context, const Arguments& argume
 }
 
 Result<Value> run_doctor(Context& context, const Arguments& arguments) {
+  if (arguments.has("--node") && arguments.text("--node") != "all")
+    return fail(Errc::usage, "`doctor` looks at a bus and all of its nodes, not at one",
+                fmt::format("`scan -n {}` asks it; leave -n out for the bus", arguments.text("--node")));
   traffic::DoctorOptions options;
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());

@@ -26,14 +26,16 @@ Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
                    {"name_text", "name", report::Show::text},
                    {"name", "", report::Show::json},
                    {"name_zh", "", report::Show::json},
-                   {"files"}};
+                   {"files_text", "files", report::Show::text},
+                   {"files", "", report::Show::json}};
   for (const auto& family : drive::find_families(context.drive_folders)) {
     const auto rules = drive::load_rules(family);
     const auto name = rules ? rules->name : std::string();
     const auto name_zh = rules ? rules->name_zh : std::string();
     table.rows.push_back({family.name, report::text_or_null(rules ? rules->vendor : std::string()),
                           report::text_or_null(context.chinese && !name_zh.empty() ? name_zh : name),
-                          report::text_or_null(name), report::text_or_null(name_zh), family.stem.string()});
+                          report::text_or_null(name), report::text_or_null(name_zh),
+                          family.stem.string() + ".*", family.stem.string()});
   }
   if (table.rows.empty()) {
     std::string folders;

@@ -93,7 +93,8 @@ class Enabling {
 
   void run(session::Rehearsal& rehearsal) {
     if (!each([this](motion::Motion& motion) { return look_at(*context_, motion); })) return;
-    if (!each([this](motion::Motion& motion) { return ask(*context_, motion); })) return;
+    confirmed_ = each([this](motion::Motion& motion) { return ask(*context_, motion); });
+    if (!confirmed_) return;
     if (!each([&](motion::Motion& motion) { return enable(motion, rehearsal); })) take_back();
   }
 
@@ -108,7 +109,8 @@ class Enabling {
       const bool is_it = failed_ == node;
       out.rows.push_back({node, state ? Value(drive::name(*state)) : Value(),
                           state ? Value(drive::is_energised(*state)) : Value(),
-                          is_it ? "failed" : result_of(node), is_it ? show::error_record(*error_) : Value()});
+                          is_it && confirmed_ ? "failed" : result_of(node),
+                          is_it ? show::error_record(*error_) : Value()});
     }
     return out;
   }
@@ -167,6 +169,7 @@ class Enabling {
   std::vector<std::unique_ptr<motion::Motion>> motions_;
   std::set<std::uint8_t> begun_;
   std::set<std::uint8_t> taken_back_;
+  bool confirmed_ = true;  ///< Whoever was asked and did not say yes has not failed.
   std::optional<std::uint8_t> failed_;
   std::optional<Error> error_;
 };

@@ -143,8 +143,9 @@ tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf,
   auto hint = did_you_mean(said, show::explained_names(shelf.libraries));
   if (hint.empty())
     hint =
-        family.empty()
-            ? "`explain` lists the topics of the standard, `explain -d FAMILY` those of a family"
+        family.empty() ? "`explain` lists the topics of the standard, `explain -d FAMILY` those of a family"
+        : context.profile->parameters.empty()
+            ? "`explain` lists the topics; `fault list` looks for words in faults"
             : "`explain` lists the topics; `param search WORD` and `fault list` look for words in parameters and faults";
   return fail(Errc::negative,
               family.empty() ? fmt::format("nothing is called '{}' or mentions it", said)

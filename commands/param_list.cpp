@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "report/catalogue.hpp"
 #include "show/object_records.hpp"
 #include "show/records.hpp"
 
@@ -20,15 +22,20 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
   std::vector<const od::Parameter*> found;
   std::vector<std::string> groups;
   for (const auto& parameter : context.profile->parameters) {
-    if (groups.empty() || groups.back() != parameter.group) groups.push_back(parameter.group);
-    if (pattern.empty() || equals_nocase(parameter.group, pattern) || show::fits(pattern, parameter.id) ||
+    if (std::find(groups.begin(), groups.end(), parameter.group) == groups.end())
+      groups.push_back(parameter.group);
+    if (pattern.empty() || equals_nocase(parameter.group, pattern) ||
+        report::chinese_word(parameter.group) == pattern || show::fits(pattern, parameter.id) ||
         drive::canonical_id(parameter.id) == drive::canonical_id(pattern))
       found.push_back(&parameter);
   }
-  if (found.empty())
+  if (found.empty()) {
+    if (context.chinese)
+      for (auto& group : groups) group = report::chinese_word(group);
     return fail(Errc::negative,
                 fmt::format("no parameter of {} matches '{}'", context.profile->family, pattern),
-                "groups: " + one_of(groups));
+                fmt::format("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
+  }
   return report::Value(show::parameter_table(found, context.chinese));
 }
 

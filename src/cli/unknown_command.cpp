@@ -53,6 +53,8 @@ Error unknown_command(const std::vector<std::string>& words, std::size_t first) 
     if (const auto parts = split(command->path, ' '); parts.size() > 1 && parts.front() == word)
       in_group.emplace_back(command->path);
   if (!in_group.empty()) return unknown_in_group(said, in_group);
+  if (goes_on && (word == "exit" || word == "quit"))
+    return make_error(Errc::usage, fmt::format("'{}' stands alone", word), {});
   if (const auto* of_prompt = command::find_prompt_word(word); of_prompt != nullptr)
     return make_error(
         Errc::usage, fmt::format("'{}' is a word of the prompt, and no command", of_prompt->name),

@@ -158,11 +158,13 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
     return fail(allowed.error());
   if (speed->value > 0 || stays) return *speed;
   const bool fast = object == objects::kHomingSpeedSwitch;
-  return fail(motion.error(Errc::refused,
-                           fmt::format("its homing speed ({}) is {} {}: homing would never end",
-                                       to_string(object), number_text(speed->value), speed->unit),
-                           fmt::format("add {}; `write {} …` sets it",
-                                       fast ? "--speed 30rpm" : "--search 6rpm", to_string(object))));
+  return fail(motion.error(
+      Errc::refused,
+      fmt::format("its homing speed ({}) is {} {}: homing would never end", to_string(object),
+                  number_text(speed->value), speed->unit),
+      fmt::format("add {}; `write {} …` sets it",
+                  fast ? "--speed 30rpm (and --search 6rpm where 0x6099:2 is 0, too)" : "--search 6rpm",
+                  to_string(object))));
 }
 
 /// From the way that --window leaves it and its speeds; a way that is not known has a time of its own.

@@ -113,7 +113,10 @@ Result<void> MotionUnits::check_unit(const drive::Meaning& what, ObjectAddress o
   auto hint = units.size() == 1 ? fmt::format("its unit here is {}", units.front())
                                 : fmt::format("its unit here is one of these: {}", fmt::join(units, ", "));
   if (given && !of_the_load && drive::parse_load_unit(fmt::format("1 {}", given->unit), 1))
-    append(hint, fmt::format("{} needs `per_turn` of the axis in a cabinet file", given->unit), "; ");
+    append(
+        hint,
+        fmt::format("as a unit of the load, {} needs `per_turn` of the axis in a cabinet file", given->unit),
+        "; ");
   const bool bare = parse_integer(trim(text)) || parse_real(trim(text));
   if (bare) return fail(Errc::usage, fmt::format("'{}' has no unit", text), std::move(hint));
   if (!given)

@@ -155,7 +155,7 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
   }
   const int bits = nearest_power_of_two(measured);
   if (const double power = std::ldexp(1, bits); is_near(measured, power))
-    return TurnCounts{power, fmt::format("2^{}, {}", bits, distance(measured, power))};
+    return TurnCounts{power, fmt::format("2^{}: {}", bits, distance(measured, power))};
   const double decimal = nearest_decimal(measured);
   const auto said = fmt::format("has {} measured counts per revolution (± {} %)", std::llround(measured),
                                 percent(uncertainty));

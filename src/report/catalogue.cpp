@@ -6,6 +6,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "report/text_parts.hpp"
+#include "report/zh_po.hpp"
 
 namespace servoctl::report {
 namespace {
@@ -132,6 +133,23 @@ std::vector<const Catalogue::Pattern*> Catalogue::candidates(std::string_view te
     return a->id.size() != b->id.size() ? a->id.size() > b->id.size() : a < b;
   });
   return out;
+}
+
+const Catalogue& chinese() {
+  // Never taken down: that would take a millisecond of each call of the program.
+  // A file that cannot be read is one that no test has seen: the texts stay English.
+  static const auto* const catalogue =
+      new Catalogue(parse_po(zh_po(), "zh.po").value_or(std::vector<PoEntry>()));
+  return *catalogue;
+}
+
+std::string in_chinese(std::string_view text, const Names* names) {
+  return chinese().translated(text, names);
+}
+
+std::string_view chinese_word(std::string_view english) {
+  const auto found = chinese().literal(english);
+  return found.empty() ? english : found;
 }
 
 }  // namespace servoctl::report

@@ -101,7 +101,21 @@ class Marks {
       out_ += wide;
       return rest.size() > 1 && rest[1] == ' ' ? 2 : 1;
     }
+    if (const auto joint = joint_of_characters(rest); !joint.empty()) {
+      out_ += joint;
+      return joint.size() + 2;
+    }
     return keep(at, 1);
+  }
+
+  /// `电机 或 监视` is written `电机或监视`: what joins names stands between blanks beside Latin ones alone.
+  std::string_view joint_of_characters(std::string_view rest) const {
+    if (rest.front() != ' ' || !ends_chinese(out_)) return {};
+    for (const std::string_view word : {"或", "和"})
+      if (rest.substr(1).starts_with(word) && rest.substr(1 + word.size()).starts_with(' ') &&
+          begins_character(rest.substr(2 + word.size())))
+        return rest.substr(1, word.size());
+    return {};
   }
 
   std::size_t keep(std::size_t at, std::size_t size) {

@@ -7,7 +7,6 @@
 #include "report/chinese_marks.hpp"
 #include "report/text_kinds.hpp"
 #include "report/text_parts.hpp"
-#include "report/zh_po.hpp"
 
 namespace servoctl::report {
 namespace {
@@ -67,6 +66,7 @@ class Translation {
   Translated of_bare(std::string_view text) {
     if (auto found = all_of(text)) return {std::move(*found), 0, true};
     if (auto found = behind_place(text)) return std::move(*found);
+    if (auto found = behind_name(text)) return std::move(*found);
     if (auto found = before_round(text)) return std::move(*found);
     auto best = around(text);
     const auto take = [&](Translated&& other) {
@@ -97,6 +97,16 @@ class Translation {
     if (!found || std::count(rest.begin(), rest.end(), ' ') < static_cast<std::ptrdiff_t>(kWords))
       return std::nullopt;
     return Translated{of(place).text + "：" + *found, 0, true};
+  }
+
+  /// `Pn0214 Speed loop gain 1: …`, whatever words the name has; nothing for others.
+  std::optional<Translated> behind_name(std::string_view text) {
+    const auto colon = text.find(": ");
+    if (names_ == nullptr || colon == std::string_view::npos) return std::nullopt;
+    const auto name = names_->find(std::string(text.substr(0, colon)));
+    if (name == names_->end()) return std::nullopt;
+    auto rest = of(text.substr(colon + 2));
+    return Translated{name->second + "：" + rest.text, rest.left, true};
   }
 
   /// `feeder: …` and `feeder, object 0x6041:0`, of an axis by its name, are told as `node 1: …` is.
@@ -277,23 +287,6 @@ class Translation {
 
 std::string Catalogue::translated(std::string_view text, const Names* names) const {
   return chinese_marks(Translation(*this, names, text.size()).of(text).text);
-}
-
-const Catalogue& chinese() {
-  // Never taken down: that would take a millisecond of each call of the program.
-  // A file that cannot be read is one that no test has seen: the texts stay English.
-  static const auto* const catalogue =
-      new Catalogue(parse_po(zh_po(), "zh.po").value_or(std::vector<PoEntry>()));
-  return *catalogue;
-}
-
-std::string in_chinese(std::string_view text, const Names* names) {
-  return chinese().translated(text, names);
-}
-
-std::string_view chinese_word(std::string_view english) {
-  const auto found = chinese().literal(english);
-  return found.empty() ? english : found;
 }
 
 }  // namespace servoctl::report

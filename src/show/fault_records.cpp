@@ -115,7 +115,7 @@ std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16
 report::Value ToldFault::cell(std::size_t most) const {
   if (!known) return {};
   if (text.empty()) return "none";
-  if (!code) return "in fault, no code";
+  if (!code) return "in fault, no code in 603Fh: `fault show`";
   const auto number = fmt::format("0x{:04X}", *code);
   return most == 0 ? number : number + " " + clip(text, most);
 }

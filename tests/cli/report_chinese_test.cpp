@@ -68,7 +68,7 @@ class ReportChinese : public testing::TestWithParam<const char*> {
     html = std::regex_replace(
         html,
         std::regex(
-            "(coe:)?sim:[^\n]*|servoctl [^\n]*|&[a-z#0-9]+;|\\b0x[0-9A-F]+\\b|\\b[0-9A-F]{4}h\\b|\\b[0-9]{4}-[0-9TZ:-]+"),
+            "(coe:)?sim:[^\n]*|`[a-z ]+`|servoctl [^\n]*|&[a-z#0-9]+;|\\b0x[0-9A-F]+\\b|\\b[0-9A-F]{4}h\\b|\\b[0-9]{4}-[0-9TZ:-]+"),
         " ");
     std::string out;
     const std::regex word("[A-Za-z_]{2,}");

@@ -13,6 +13,8 @@ TEST(ChineseMarks, AreWideBesideChineseAndStayBetweenFiguresAndNames) {
   EXPECT_EQ(chinese_marks("主回路电接通, 远程控制"), "主回路电接通，远程控制");
   EXPECT_EQ(chinese_marks("DI, 输入功能: CW 输入;"), "DI，输入功能：CW 输入；");
   EXPECT_EQ(chinese_marks("系列: gsd600? 或 ts?"), "系列：gsd600? 或 ts?");
+  EXPECT_EQ(chinese_marks("组: canopen、电机 或 监视"), "组：canopen、电机或监视");
+  EXPECT_EQ(chinese_marks("端子 或 canopen, jog 和 监视"), "端子 或 canopen, jog 和 监视");
   EXPECT_EQ(chinese_marks("节点 1 的 0x6041:0, 0x6040:0 为 1, 2"), "节点 1 的 0x6041:0, 0x6040:0 为 1, 2");
   EXPECT_EQ(chinese_marks("a.txt:3: 节点"), "a.txt:3：节点");
   EXPECT_EQ(chinese_marks("a.txt:3: Pn0214 增益"), "a.txt:3：Pn0214 增益");

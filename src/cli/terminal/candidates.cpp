@@ -11,6 +11,7 @@
 #include "command/registry.hpp"
 #include "drive/topics.hpp"
 #include "report/catalogue.hpp"
+#include "report/text_kinds.hpp"
 #include "show/explanation.hpp"
 
 namespace servoctl::cli {
@@ -81,11 +82,7 @@ std::vector<Candidate> Candidates::take() {
 
 /// Names of data are in Chinese already.
 std::string Candidates::told(const std::string& english) const {
-  constexpr unsigned char kFirstOfChinese = 0xE3;
-  const bool is_chinese = std::any_of(english.begin(), english.end(), [](char c) {
-    return static_cast<unsigned char>(c) >= kFirstOfChinese;
-  });
-  return chinese_ && !is_chinese ? report::in_chinese(english) : english;
+  return chinese_ && !report::has_chinese(english) ? report::in_chinese(english) : english;
 }
 
 bool Candidates::fits(std::string_view word) const { return starts_with_nocase(word, begun_); }

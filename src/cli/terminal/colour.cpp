@@ -33,7 +33,7 @@ constexpr std::array kCells{
     Word{"FAILED", kRed},
     Word{"failed", kRed},
     Word{"refused", kRed},
-    Word{"in fault, no code", kRed},
+    Word{"in fault, no code in 603Fh: `fault show`", kRed},
     Word{"故障", kRed},
     Word{"失败", kRed},
     Word{"未通过", kRed},

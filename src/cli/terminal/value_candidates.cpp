@@ -9,6 +9,7 @@
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/unit.hpp"
+#include "report/text_kinds.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -68,12 +69,6 @@ bool is_one_word(std::string_view text) {
   });
 }
 
-/// Whoever began with Chinese goes on with the names of the manual.
-bool begins_in_chinese(std::string_view text) {
-  constexpr unsigned char kFirst = 0xE3;
-  return !text.empty() && static_cast<unsigned char>(text.front()) >= kFirst;
-}
-
 /// The manual names it, and gives it no meaning.
 bool is_reserved(const od::EnumLabel& label) { return starts_with_nocase(label.label, "reserved"); }
 
@@ -96,7 +91,7 @@ void Candidates::add_objects() {
       if (known->parameter(entry.address) == nullptr)
         add(drive::entry_name(object, entry),
             address_of(entry.address, object.entries.size() == 1) + (chinese_ ? " " + entry.name_zh : ""));
-  if (begins_in_chinese(begun_))
+  if (report::has_chinese(begun_))
     for (const auto& object : known->dictionary.objects())
       for (const auto& entry : object.entries)
         if (known->parameter(entry.address) == nullptr)
@@ -120,7 +115,7 @@ void Candidates::add_panel_parameters() {
   const auto group = begin_group(Candidate::Group::parameters);
   for (const auto& parameter : known->parameters)
     add(parameter.id, name_in(chinese_, parameter.name, parameter.name_zh));
-  if (begins_in_chinese(begun_))
+  if (report::has_chinese(begun_))
     for (const auto& parameter : known->parameters) add(parameter.name_zh, parameter.id);
   begin_group(group);
 }
