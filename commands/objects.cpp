@@ -25,7 +25,8 @@ bool wanted_object(std::string_view pattern, const od::Object& object, const od:
     return show::fits(pattern, address) || show::fits(pattern, entry.name) ||
            show::fits(pattern, drive::entry_name(object, entry));
   if (const auto exact = parse_object_address(pattern)) return exact->index == entry.address.index;
-  return show::contains_nocase(name, pattern) || show::contains_nocase(entry.name_zh, pattern);
+  return show::contains_nocase(name, pattern) ||
+         show::contains_nocase(object.name_zh + " " + entry.name_zh, pattern);
 }
 
 /// What the data sheet says beside the dictionary; nothing where there is none.

@@ -55,7 +55,7 @@ void read_flags(TableRow& row, Entry& entry) {
   if (rpdo || tpdo) entry.pdo = rpdo && tpdo ? PdoMapping::both : rpdo ? PdoMapping::rpdo : PdoMapping::tpdo;
 }
 
-void read_row(TableRow& row, Entry& entry) {
+void read_entry(TableRow& row, Entry& entry) {
   entry.unit = std::string(row.cell(kUnit));
   entry.scale = row.scale(kScale);
   entry.encoding = row.encoding(kEncoding);
@@ -69,6 +69,27 @@ void read_row(TableRow& row, Entry& entry) {
   read_flags(row, entry);
 }
 
+/// `0x6099`: the name of an object of several entries, which has no place in the lines of these.
+void name_object(TableRow& row, Object& object) {
+  object.name_zh = std::string(row.cell(kNameZh));
+  for (std::size_t column = kUnit; column < kColumns.size(); ++column)
+    if (column != kNameZh && column != kLine && !row.cell(column).empty())
+      row.refuse(column, "empty in the line of an object without a sub-index");
+}
+
+void read_row(TableRow& row, Dictionary& dictionary) {
+  const auto address = row.object(kObject);
+  auto* object = address ? dictionary.object(address->index) : nullptr;
+  if (object != nullptr && object->entries.size() > 1 &&
+      row.cell(kObject).find(':') == std::string_view::npos)
+    return name_object(row, *object);
+  auto* entry = address ? dictionary.find(*address) : nullptr;
+  if (entry == nullptr)
+    row.refuse(kObject, "an object of the dictionary");
+  else
+    read_entry(row, *entry);
+}
+
 }  // namespace
 
 Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_view file) {
@@ -78,12 +99,7 @@ Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_
   if (!columns) return fail(columns.error());
   for (const auto& cells : table->rows) {
     TableRow row(cells, *columns, kColumns, file);
-    const auto address = row.object(kObject);
-    auto* entry = address ? dictionary.find(*address) : nullptr;
-    if (entry == nullptr)
-      row.refuse(kObject, "an object of the dictionary");
-    else
-      read_row(row, *entry);
+    read_row(row, dictionary);
     if (row.error()) return fail(*row.error());
   }
   return {};

@@ -68,6 +68,11 @@ const Object* Dictionary::object(std::uint16_t index) const {
   return place != objects_.end() && place->index == index ? &*place : nullptr;
 }
 
+Object* Dictionary::object(std::uint16_t index) {
+  return const_cast<Object*>(
+      static_cast<const Dictionary&>(*this).object(index));  // NOLINT: the object is ours.
+}
+
 const Entry* Dictionary::find(ObjectAddress address) const {
   const auto* found = object(address.index);
   if (found == nullptr) return nullptr;
@@ -88,6 +93,8 @@ std::size_t Dictionary::entry_count() const {
 
 void inherit(Dictionary& dictionary, const Dictionary& parent) {
   for (const auto& object : parent.objects()) {
+    if (auto* own = dictionary.object(object.index); own != nullptr && own->name_zh.empty())
+      own->name_zh = object.name_zh;
     for (const auto& from : object.entries) {
       auto* entry = dictionary.find(from.address);
       if (entry == nullptr || entry->type != from.type) continue;

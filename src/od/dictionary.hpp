@@ -92,6 +92,7 @@ struct Object {
   std::string name;
   ObjectCode code = ObjectCode::var;
   std::vector<Entry> entries;  ///< In rising sub-index; gaps are allowed.
+  std::string name_zh = {};    ///< Of an object of several entries; empty where the data has none.
 };
 
 /// An object dictionary, ordered by index.
@@ -101,6 +102,7 @@ class Dictionary {
   void add(Object object);
 
   const Object* object(std::uint16_t index) const;
+  Object* object(std::uint16_t index);
   const Entry* find(ObjectAddress address) const;
   Entry* find(ObjectAddress address);
 

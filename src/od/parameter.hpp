@@ -44,7 +44,8 @@ struct Parameter {
 Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::string_view file);
 
 /// Merges `<family>.objects.csv` into the dictionary: unit, scale, effect, labels, Chinese name, PDO
-/// direction, flags. Errc::file with file and line for a bad cell or an object the dictionary does not have.
+/// direction, flags; a line without a sub-index has the Chinese name of an object of several entries.
+/// Errc::file with file and line for a bad cell or an object the dictionary does not have.
 Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_view file);
 
 }  // namespace servoctl::od

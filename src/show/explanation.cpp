@@ -31,8 +31,10 @@ Explanation of_entry(const drive::Profile& profile, const od::Object& object, co
 
 Explanation of_object(const drive::Profile& profile, const od::Object& object, bool chinese) {
   if (object.entries.size() == 1) return of_entry(profile, object, object.entries.front(), chinese);
-  auto topic = topic_heading(profile.family, "object", od::identifier(object.name),
-                             fmt::format("0x{:04X}: {}", object.index, object.name), {});
+  auto topic = topic_heading(
+      profile.family, "object", od::identifier(object.name),
+      fmt::format("0x{:04X}: {}", object.index, object.name),
+      object.name_zh.empty() ? std::string() : fmt::format("0x{:04X}：{}", object.index, object.name_zh));
   topic.object = ObjectAddress{object.index, 0};
   std::vector<report::Record> records;
   for (const auto& entry : object.entries)
@@ -56,7 +58,8 @@ void add_objects(const TopicQuery& query, const drive::Profile& profile, bool ch
     out.push_back(std::move(found));
   };
   for (const auto& object : profile.dictionary.objects()) {
-    const bool whole = address ? !one && object.index == address->index : subject.names(object.name);
+    const bool whole = address ? !one && object.index == address->index
+                               : subject.names(object.name) || subject.names(object.name_zh);
     const bool is_parameter =
         object.entries.size() == 1 && profile.parameter(object.entries.front().address) != nullptr;
     if (whole && !is_parameter) add(of_object(profile, object, chinese));

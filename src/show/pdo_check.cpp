@@ -31,6 +31,7 @@ tl::unexpected<Error> no(const Pdo& pdo, std::string why, std::string hint = {})
   return fail(Errc::usage, fmt::format("{}: {}", name_of(pdo), std::move(why)), std::move(hint));
 }
 
+/// What the data says of it; doubts left aside.
 bool fits_direction(const od::Entry& entry, PdoDirection direction) {
   const auto wanted = direction == PdoDirection::receive ? od::PdoMapping::rpdo : od::PdoMapping::tpdo;
   if (entry.pdo != wanted && entry.pdo != od::PdoMapping::both) return false;
@@ -59,8 +60,7 @@ Result<void> check_entry(const drive::Profile& profile, const Pdo& pdo, const Pd
     return no(pdo, fmt::format("{} is not in the dictionary of {}", to_string(entry.object), profile.family),
               fmt::format("`objects -d {}` lists what it has", profile.family));
   }
-  const bool stated = !known->doubts.about("pdo");
-  if (stated && !fits_direction(*known, pdo.direction))
+  if (!may_map(*known, pdo.direction))
     return no(pdo, name + " cannot be mapped here", direction_hint(*known));
   const auto bits = bits_of(profile, entry.object);
   const bool sure = !profile.is_generic() && !known->doubts.about("type");
@@ -144,6 +144,10 @@ Result<void> check_can_id(const Pdo& wanted, std::span<const Pdo> all) {
 }
 
 }  // namespace
+
+bool may_map(const od::Entry& entry, PdoDirection direction) {
+  return entry.doubts.about("pdo") || fits_direction(entry, direction);
+}
 
 std::optional<std::uint8_t> bits_of(const drive::Profile& profile, ObjectAddress object) {
   if (object.index < std::size(kGapBits)) return kGapBits[object.index];

@@ -16,6 +16,10 @@ namespace servoctl::show {
 /// known.
 std::optional<std::uint8_t> bits_of(const drive::Profile& profile, ObjectAddress object);
 
+/// Whether an entry goes into a PDO of this direction; where the manual does not state it, the drive will
+/// tell.
+bool may_map(const od::Entry& entry, canopen::PdoDirection direction);
+
 /// Whether the family's drives map this: objects there, mappable in this direction, of this length, no more
 /// than fit. What the dictionary of a drive of unknown family does not list is left to the drive.
 /// Errc::usage.

@@ -54,6 +54,7 @@ TEST_F(Completing, SaysBesideAWordWhatItIs) {
   EXPECT_EQ(hint("param set 免调整", "免调整刚性等级"), "Pn0271");
   EXPECT_EQ(hint("read 状态", "状态字"), "0x6041");
   EXPECT_EQ(hint("read ", "状态字"), "(none)") << "only for who begins so";
+  EXPECT_EQ(hint("param list 增", "增益"), "参数组");
   EXPECT_EQ(hint("param ", "search"), "按词查找面板参数，中文或英文");
   shell.defaults().chinese = false;
   EXPECT_EQ(hint("param ", "search"), "Find panel parameters by words, in English or Chinese");
@@ -134,6 +135,16 @@ TEST_F(Completing, SaysWhichUnitsNeedTheCountsOfATurn) {
   EXPECT_EQ(hint("move -d ts 90", "90deg"), "needs --turn");
   EXPECT_EQ(hint("jog -d ts 60", "60rpm"), "") << "it counts in rpm by itself";
   EXPECT_EQ(hint("move -d sv2 90", "90deg"), "") << "the drive tells it";
+}
+
+TEST_F(Completing, OffersForAPdoWhatGoesIntoIt) {
+  EXPECT_TRUE(offers_word("pdo map RPDO1 ", "controlword"));
+  EXPECT_FALSE(offers_word("pdo map RPDO1 ", "statusword")) << "it is sent";
+  EXPECT_TRUE(offers_word("pdo map tpdo2 0x6064 statu", "statusword"));
+  EXPECT_TRUE(offers_word("pdo map TPDO1 0x604", "0x6041"));
+  EXPECT_FALSE(offers_word("pdo map TPDO1 0x100", "0x1005"));
+  EXPECT_FALSE(offers_word("pdo map TPDO1 Pn", "Pn0214")) << "a panel parameter is set by SDO";
+  EXPECT_TRUE(offers_word("read 0x100", "0x1005"));
 }
 
 TEST_F(Completing, OffersThePresetsOfTheFamily) {

@@ -77,6 +77,18 @@ void expect_in_order(std::string_view what, const std::optional<od::Value>& low,
   }
 }
 
+TEST_P(DriveData, NamesEveryObjectAndEntryInChinese) {
+  for (const auto& object : profile.dictionary.objects()) {
+    if (object.entries.size() > 1) {
+      EXPECT_NE(object.name_zh, "") << fmt::format("{:04X}h", object.index);
+    }
+    for (const auto& entry : object.entries)
+      if (profile.parameter(entry.address) == nullptr) {
+        EXPECT_NE(entry.name_zh, "") << to_string(entry.address);
+      }
+  }
+}
+
 TEST_P(DriveData, HasDefaultsWithinLimitsAndWithinTheirType) {
   for (const auto& p : profile.parameters) {
     expect_in_order(p.id, p.min, p.default_value, p.max);

@@ -213,6 +213,23 @@ TEST(Annotate, KnowsTheLeastThatIsMoreThanNothing) {
     EXPECT_FALSE(annotate(d, std::string("object,flags\n0x6060:00,") + flag + "\n", "o.csv")) << flag;
 }
 
+TEST(Annotate, NamesAnObjectOfSeveralEntries) {
+  Dictionary d;
+  Entry count;
+  count.address = {0x6099, 0};
+  Entry speed;
+  speed.address = {0x6099, 1};
+  d.add({0x6099, "Homing speeds", ObjectCode::array, {count, speed}});
+  const auto done =
+      annotate(d, "object,unit,name_zh,line\n0x6099,,回零速度,7\n0x6099:00,,子索引数,8\n", "o.csv");
+  ASSERT_TRUE(done) << done.error().message;
+  EXPECT_EQ(d.object(0x6099)->name_zh, "回零速度");
+  EXPECT_EQ(d.find({0x6099, 0})->name_zh, "子索引数");
+  EXPECT_EQ(d.find({0x6099, 1})->name_zh, "");
+  EXPECT_EQ(annotate(d, "object,unit\n0x6099,rpm\n", "o.csv").error().message,
+            "o.csv:2: column unit: 'rpm' is not empty in the line of an object without a sub-index");
+}
+
 TEST(Annotate, RefusesAnObjectTheDictionaryDoesNotHave) {
   auto d = dictionary();
   EXPECT_EQ(annotate(d, "object,unit\n0x6061:00,rpm\n", "o.csv").error().message,

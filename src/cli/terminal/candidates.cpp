@@ -131,7 +131,10 @@ void Candidates::add_values(const command::Command* command, const command::Para
 void Candidates::add_kind(const command::Command* command, const command::Parameter& parameter,
                           const std::vector<std::string>& before) {
   switch (parameter.kind) {
-    case Kind::object: return add_objects();
+    case Kind::object:
+      if (command != nullptr && command->path == "pdo map" && !before.empty())
+        if (const auto pdo = canopen::parse_pdo_name(before.front())) mapped_ = pdo->direction;
+      return add_objects();
     case Kind::parameter:
       if (command != nullptr && command->path == "param set") return add_assignment(before);
       return add_panel_parameters();

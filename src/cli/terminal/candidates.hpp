@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "canopen/pdo.hpp"
 #include "cli/shell.hpp"
 #include "cli/terminal/begun_place.hpp"
 #include "cli/terminal/candidate_list.hpp"
@@ -55,6 +57,7 @@ class Candidates {
 
  private:
   const drive::Profile* profile();
+  bool may_stand(const od::Entry& entry) const;
   std::string told(const std::string& english) const;
   bool fits(std::string_view word) const;
   void add_kind(const command::Command* command, const command::Parameter& parameter,
@@ -81,6 +84,7 @@ class Candidates {
   bool chinese_;
   std::unordered_set<std::string> known_;
   std::vector<Candidate> out_;
+  std::optional<canopen::PdoDirection> mapped_;  ///< Objects are for a PDO of this direction.
   Candidate::Group group_ = Candidate::Group::values;
   std::string note_;
   bool any_file_ = false;

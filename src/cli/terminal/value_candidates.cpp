@@ -9,7 +9,9 @@
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/unit.hpp"
+#include "report/catalogue.hpp"
 #include "report/text_kinds.hpp"
+#include "show/pdo_check.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -80,6 +82,10 @@ std::string range_of(const drive::Meaning& meaning) {
 
 }  // namespace
 
+bool Candidates::may_stand(const od::Entry& entry) const {
+  return !mapped_ || show::may_map(entry, *mapped_);
+}
+
 void Candidates::add_objects() {
   const auto* known = profile();
   if (known == nullptr) return;
@@ -88,13 +94,13 @@ void Candidates::add_objects() {
   const auto group = begin_group(Candidate::Group::objects);
   for (const auto& object : known->dictionary.objects())
     for (const auto& entry : object.entries)
-      if (known->parameter(entry.address) == nullptr)
+      if (known->parameter(entry.address) == nullptr && may_stand(entry))
         add(drive::entry_name(object, entry),
             address_of(entry.address, object.entries.size() == 1) + (chinese_ ? " " + entry.name_zh : ""));
   if (report::has_chinese(begun_))
     for (const auto& object : known->dictionary.objects())
       for (const auto& entry : object.entries)
-        if (known->parameter(entry.address) == nullptr)
+        if (known->parameter(entry.address) == nullptr && may_stand(entry))
           add(entry.name_zh, address_of(entry.address, object.entries.size() == 1));
   begin_group(group);
 }
@@ -103,9 +109,10 @@ void Candidates::add_addresses() {
   const auto group = begin_group(Candidate::Group::objects);
   for (const auto& object : profile()->dictionary.objects())
     for (const auto& entry : object.entries)
-      add(address_like(begun_, entry.address, object.entries.size() == 1),
-          name_in(chinese_, object.entries.size() == 1 ? object.name : object.name + ": " + entry.name,
-                  entry.name_zh));
+      if (may_stand(entry))
+        add(address_like(begun_, entry.address, object.entries.size() == 1),
+            name_in(chinese_, object.entries.size() == 1 ? object.name : object.name + ": " + entry.name,
+                    entry.name_zh));
   begin_group(group);
 }
 
@@ -113,10 +120,12 @@ void Candidates::add_panel_parameters() {
   const auto* known = profile();
   if (known == nullptr) return;
   const auto group = begin_group(Candidate::Group::parameters);
-  for (const auto& parameter : known->parameters)
+  for (const auto& parameter : known->parameters) {
+    const auto* entry = mapped_ && parameter.object ? known->dictionary.find(*parameter.object) : nullptr;
+    if (mapped_ && (entry == nullptr || !may_stand(*entry))) continue;
     add(parameter.id, name_in(chinese_, parameter.name, parameter.name_zh));
-  if (report::has_chinese(begun_))
-    for (const auto& parameter : known->parameters) add(parameter.name_zh, parameter.id);
+    if (report::has_chinese(begun_)) add(parameter.name_zh, parameter.id);
+  }
   begin_group(group);
 }
 
@@ -206,7 +215,11 @@ void Candidates::add_words_of(const command::Command& command, const command::Pa
   if (is("backup", "--only"))
     for (const auto* part : {"communication", "pdo", "params", "changed"}) add(part);
   if (const auto* known = of_groups ? profile() : nullptr; known != nullptr)
-    for (const auto& one : known->parameters) add(one.group, "group of parameters");
+    for (const auto& one : known->parameters) {
+      add(one.group, "group of parameters");
+      if (is("param list", "pattern") && report::has_chinese(begun_))
+        add(report::chinese_word(one.group), "group of parameters");
+    }
 }
 
 /// Words that no kind tells: those of modes, methods, units, PDOs, bitrates.
