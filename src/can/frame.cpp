@@ -73,7 +73,7 @@ std::optional<Frame> parse_frame(std::string_view text) {
   const auto rest = text.substr(hash + 1);
   if (!frame.error && !rest.empty() && (rest.front() == 'R' || rest.front() == 'r')) {
     const auto size = rest.size() == 1 ? std::optional<std::uint64_t>(0) : parse_digits(rest.substr(1), 10);
-    if (!size || *size > 8) return std::nullopt;
+    if (!size || *size > 8 || rest.size() > 2) return std::nullopt;
     frame.remote = true;
     frame.size = static_cast<std::uint8_t>(*size);
     return frame;
