@@ -4,6 +4,7 @@
 #include "canopen/node_id.hpp"
 #include "command/lss_options.hpp"
 #include "command/setting_options.hpp"
+#include "settings/address_change.hpp"
 #include "settings/lss_node.hpp"
 #include "show/records.hpp"
 

@@ -1,4 +1,5 @@
 // What is wrong in a word of any command is told before the first line of a batch file is run.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
 #include "tested_drive.hpp"
 
 namespace servoctl::commands {

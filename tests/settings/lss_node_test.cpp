@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "drive/standard_objects.hpp"
 #include "tests/session/lss_world.hpp"
 
 namespace servoctl::settings {
