@@ -4,6 +4,7 @@
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "report/catalogue.hpp"
+#include "report/text_kinds.hpp"
 #include "show/object_records.hpp"
 #include "show/records.hpp"
 
@@ -21,11 +22,13 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
   const auto pattern = arguments.text("pattern");
   std::vector<const od::Parameter*> found;
   std::vector<std::string> groups;
+  const bool in_chinese = report::has_chinese(pattern);  // The catalogue is read for these alone.
   for (const auto& parameter : context.profile->parameters) {
     if (std::find(groups.begin(), groups.end(), parameter.group) == groups.end())
       groups.push_back(parameter.group);
     if (pattern.empty() || equals_nocase(parameter.group, pattern) ||
-        report::chinese_word(parameter.group) == pattern || show::fits(pattern, parameter.id) ||
+        (in_chinese && report::chinese_word(parameter.group) == pattern) ||
+        show::fits(pattern, parameter.id) ||
         drive::canonical_id(parameter.id) == drive::canonical_id(pattern))
       found.push_back(&parameter);
   }

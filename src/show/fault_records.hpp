@@ -36,8 +36,8 @@ struct ToldFault {
   std::optional<std::uint16_t> code;  ///< Of 603Fh, where that has one.
   std::string text;                   ///< In words; empty where there is no fault.
 
-  /// `none`, `0x7300 Overspeed` cut to `most` columns of words (0: without), `in fault, no code`; nothing
-  /// where nothing tells it.
+  /// `none`, `0x7300 Overspeed` cut to `most` columns of words (0: without), what reads the alarm of a drive
+  /// in fault that has no code there; nothing where nothing tells it.
   report::Value cell(std::size_t most) const;
   /// `code` and `text`; null where there is no fault, or nothing tells it. `code` is null where the drive is
   /// in fault and has no code to tell.

@@ -88,8 +88,7 @@ class FrameDecoder {
   std::array<canopen::SdoObserver, 128> channels_;
   std::array<std::optional<Pending>, 128> pending_;
   ModesSeen modes_;
-  std::bitset<128>
-      asked_;  ///< Nodes that were asked for their state by a remote frame, and have not answered.
+  std::bitset<128> asked_;  ///< Nodes whose answer to a question by node guarding is still to come.
 };
 
 }  // namespace servoctl::traffic

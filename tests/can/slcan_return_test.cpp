@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "can/slcan.hpp"
+#include "tests/can/late_opening.hpp"
 #include "tests/can/slcan_fixture.hpp"
 
 namespace servoctl::can {
@@ -63,16 +64,7 @@ TEST(Slcan, AnOpeningThatTakesLongerThanARecoveryGoesOnWithTheNextOne) {
     return ScriptedAdapter::good(command);
   });
   plug.into(after);
-  Result<void> back = fail(Errc::bus, "");
-  int tries = 0;
-  for (; tries < 200 && !back; ++tries) {
-    const auto begin = (*bus)->now();
-    back = (*bus)->recover(begin + milliseconds(20));
-    EXPECT_LT((*bus)->now() - begin, milliseconds(250)) << "it ends by its deadline";
-    if (!back) EXPECT_FALSE((*bus)->send(slcan_frame("601#00"))) << "it is not open yet";
-  }
-  EXPECT_TRUE(back);
-  EXPECT_GT(tries, 3);
+  EXPECT_GT(recoveries_until_open(**bus, slcan_frame("601#00")), 3);
   EXPECT_EQ(opened, 1);
   EXPECT_TRUE((*bus)->send(slcan_frame("601#00")));
 }

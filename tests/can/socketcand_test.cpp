@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "base/signal_wait.hpp"
+#include "tests/can/late_opening.hpp"
 
 namespace servoctl::can {
 namespace {
@@ -208,16 +209,7 @@ TEST(Socketcand, AnOpeningThatTakesLongerThanARecoveryGoesOnWithTheNextOne) {
   ASSERT_TRUE(bus);
   server.hang_up();
   ASSERT_FALSE((*bus)->receive((*bus)->now() + seconds(5)));
-  Result<void> back = fail(Errc::bus, "");
-  int tries = 0;
-  for (; tries < 200 && !back; ++tries) {
-    const auto begin = (*bus)->now();
-    back = (*bus)->recover(begin + milliseconds(20));
-    EXPECT_LT((*bus)->now() - begin, milliseconds(250)) << "it ends by its deadline";
-    if (!back) EXPECT_FALSE((*bus)->send(server_frame("601#00"))) << "it is not open yet";
-  }
-  EXPECT_TRUE(back);
-  EXPECT_GT(tries, 3);
+  EXPECT_GT(recoveries_until_open(**bus, server_frame("601#00")), 3);
   EXPECT_EQ(opened, 2);
 }
 

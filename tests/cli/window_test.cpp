@@ -7,6 +7,9 @@
 #include "cli/terminal/colour.hpp"
 #include "cli/terminal/fitted.hpp"
 #include "golden_cases.hpp"
+#include "report/catalogue.hpp"
+#include "report/value.hpp"
+#include "show/fault_records.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -92,6 +95,12 @@ TEST(Coloured, AreWordsThatStandAloneAndMeanSomething) {
   EXPECT_EQ(coloured("caution  the fault of it"), "\x1B[33mcaution\x1B[0m  the fault of it");
   EXPECT_EQ(coloured("no fault here"), "no fault here");
   EXPECT_EQ(coloured("        fault"), "        fault") << "the second line of a cell";
+}
+
+TEST(Coloured, IsTheFaultWithoutACodeInBothLanguages) {
+  const std::string cell(trim(report::to_text(show::ToldFault{true, {}, "in fault"}.cell(0))));
+  for (const auto& told : {cell, report::in_chinese(cell)})
+    EXPECT_EQ(coloured("node  fault\n   1  " + told), "node  fault\n   1  \x1B[31m" + told + "\x1B[0m");
 }
 
 TEST(Coloured, IsTextForPeopleAndNoJson) {

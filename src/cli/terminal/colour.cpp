@@ -35,6 +35,7 @@ constexpr std::array kCells{
     Word{"refused", kRed},
     Word{"in fault, no code in 603Fh: `fault show`", kRed},
     Word{"故障", kRed},
+    Word{"处于故障状态，603Fh 无代码：`fault show`", kRed},
     Word{"失败", kRed},
     Word{"未通过", kRed},
     Word{"caution", kYellow},
