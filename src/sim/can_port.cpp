@@ -103,20 +103,8 @@ void CanPort::collect_pdos(TimePoint now) {
 
 void CanPort::collect_answers(TimePoint now) {
   collect_emergencies(now);
-  while (const auto answer = server_.take_frame()) {
-    if (faults_.drop_answers > 0) {
-      --faults_.drop_answers;
-      continue;
-    }
-    const int copies = faults_.duplicate_answers > 0 ? 2 : 1;
-    if (copies == 2) --faults_.duplicate_answers;
-    for (int i = 0; i < copies; ++i) {
-      if (faults_.answer_delay > Duration::zero())
-        late_.push_back({*answer, now + faults_.answer_delay});
-      else
-        tx_.push_back(*answer);
-    }
-  }
+  while (const auto answer = server_.take_frame()) answers_.put(*answer, faults_, now);
+  while (const auto answer = answers_.take(now)) tx_.push_back(*answer);
 }
 
 void CanPort::on_time(TimePoint now) {
@@ -133,10 +121,6 @@ void CanPort::on_time(TimePoint now) {
   collect_pdos(now);
   server_.on_time(now);
   collect_answers(now);
-  while (!late_.empty() && now >= late_.front().time) {
-    tx_.push_back(late_.front().frame);
-    late_.pop_front();
-  }
   error_control_.on_time(now);
   while (const auto heartbeat = error_control_.take_frame()) tx_.push_back(*heartbeat);
   if (error_control_.take_life_lost()) on_life_lost(now);
@@ -146,10 +130,9 @@ void CanPort::on_time(TimePoint now) {
 
 TimePoint CanPort::deadline() const {
   if (model_->has_emergency()) return TimePoint::min();
-  const auto next =
-      std::min({boot_at_, model_->deadline(), pdos_.deadline(), server_.deadline(), error_control_.deadline(),
-                consumer_.deadline(), emergencies_.deadline(emergency_inhibit()), planned_silence_});
-  return late_.empty() ? next : std::min(next, late_.front().time);
+  return std::min({boot_at_, model_->deadline(), pdos_.deadline(), server_.deadline(),
+                   error_control_.deadline(), consumer_.deadline(),
+                   emergencies_.deadline(emergency_inhibit()), planned_silence_, answers_.deadline()});
 }
 
 std::optional<can::Frame> CanPort::take_frame() {
@@ -208,7 +191,7 @@ void CanPort::on_nmt(NmtCommand command, TimePoint now) {
       error_control_.stop();
       consumer_ = {};
       server_.reset();
-      late_.clear();
+      answers_.clear();
       set_nmt(NmtState::initialising, now);
   }
 }

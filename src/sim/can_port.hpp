@@ -7,6 +7,7 @@
 #include "canopen/error_control.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_server.hpp"
+#include "sim/answer_way.hpp"
 #include "sim/device.hpp"
 #include "sim/drive_model.hpp"
 #include "sim/emergency_producer.hpp"
@@ -15,14 +16,6 @@
 #include "sim/pdo_engine.hpp"
 
 namespace servoctl::sim {
-
-/// Ways in which the way to a drive misbehaves; all off at first.
-struct WireFaults {
-  bool silent = false;                  ///< The cable is out: nothing is heard and nothing is said.
-  std::uint32_t drop_answers = 0;       ///< So many SDO answers are lost on the way.
-  std::uint32_t duplicate_answers = 0;  ///< So many SDO answers arrive twice.
-  Duration answer_delay{};              ///< Every SDO answer comes this late.
-};
 
 /// What makes a drive a CANopen node: SDO server, PDOs, NMT slave, boot-up, heartbeat, node guarding, the
 /// heartbeats it watches, emergencies under the COB-ID of 1014h.
@@ -47,11 +40,6 @@ class CanPort final : public Device, private DrivePort {
   void enable_lss() { lss_.emplace(*model_); }
 
  private:
-  struct Delayed {
-    can::Frame frame;
-    TimePoint time;
-  };
-
   std::uint32_t check_write(ObjectAddress object, ByteSpan data) const override;
   void on_written(ObjectAddress object) override;
 
@@ -85,7 +73,7 @@ class CanPort final : public Device, private DrivePort {
   bool full_restart_ = true;
   EmergencyProducer emergencies_;
   std::deque<can::Frame> tx_;
-  std::deque<Delayed> late_;
+  AnswerWay answers_;
   WireFaults faults_;
   TimePoint planned_silence_ = kNever;
 };

@@ -31,8 +31,15 @@ Result<void> apply_option(const CellSpec& spec, const CellSpec::Option& option,
     enable_lss(drives);
     return {};
   }
+  if (option.key == "lie") {
+    const auto words = lies_of(spec, option, kCanLies);
+    if (!words) return fail(words.error());
+    for (const auto& drive : drives)
+      for (const auto word : *words) add_lie(drive->wire_faults(), word);
+    return {};
+  }
   if (option.key != "silent" && option.key != "delay") {
-    const std::string keys[] = {"state", "fault", "silent", "delay", "counts", "lss"};
+    const std::string keys[] = {"state", "fault", "silent", "delay", "lie", "counts", "lss"};
     return spec.wrong(
         fmt::format("'{}' is not an option of a simulated bus: use {}", option.key, one_of(keys)));
   }

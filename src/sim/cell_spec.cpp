@@ -141,6 +141,17 @@ Result<Duration> time_of(const CellSpec& spec, const CellSpec::Option& option) {
   return time;
 }
 
+Result<std::vector<std::string_view>> lies_of(const CellSpec& spec, const CellSpec::Option& option,
+                                              std::span<const std::string_view> known) {
+  auto words = split(option.value, ',');
+  const std::vector<std::string> names(known.begin(), known.end());
+  for (const auto word : words)
+    if (std::find(known.begin(), known.end(), word) == known.end())
+      return spec.wrong(
+          fmt::format("'lie={}': simulated drives here can lie by {}", option.value, one_of(names)));
+  return words;
+}
+
 Result<bool> apply_drive_option(const CellSpec& spec, const CellSpec::Option& option,
                                 std::span<DriveModel* const> drives, TimePoint now) {
   if (option.key == "fault") return plan_fault(spec, option.value, drives, now);

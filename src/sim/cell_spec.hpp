@@ -52,6 +52,11 @@ Result<const drive::Profile*> profile_of(std::vector<std::shared_ptr<const drive
 /// The time of an option such as `delay=20ms`; Errc::usage, with the key.
 Result<Duration> time_of(const CellSpec& spec, const CellSpec::Option& option);
 
+/// The words of `lie=WORD,WORD`: ways in which simulated drives deviate from the standard. Errc::usage for a
+/// word that is not one of `known`, which the message lists.
+Result<std::vector<std::string_view>> lies_of(const CellSpec& spec, const CellSpec::Option& option,
+                                              std::span<const std::string_view> known);
+
 /// Applies an option that is about the drives, whatever wire they hang on: `fault=CODE@TIME` and `counts=N`;
 /// false for any other. Times count from `now`.
 Result<bool> apply_drive_option(const CellSpec& spec, const CellSpec::Option& option,

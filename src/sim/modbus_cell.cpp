@@ -14,6 +14,27 @@ namespace {
 constexpr std::string_view kModbusExample =
     "simulated drives on Modbus are written FAMILY@ADDRESS, for example ts@1,ts@2?state=FILE";
 
+/// Longer than the usual timeout of 500 ms, and shorter than twice that.
+constexpr Duration kLateAnswer = std::chrono::milliseconds(700);
+constexpr std::string_view kModbusLies[] = {"late", "twice", "short", "unconfirmed"};
+
+Result<void> add_modbus_lies(const CellSpec& spec, const CellSpec::Option& option, ModbusLies& lies) {
+  const auto words = lies_of(spec, option, kModbusLies);
+  if (!words) return fail(words.error());
+  for (const auto word : *words) {
+    if (word == "late") lies.late = true;
+    if (word == "twice") lies.twice = true;
+    if (word == "short") lies.is_short = true;
+    if (word == "unconfirmed") lies.unconfirmed = true;
+  }
+  return {};
+}
+
+bool is_write(ByteSpan pdu) {
+  return pdu[0] == static_cast<std::uint8_t>(modbus::Function::write_register) ||
+         pdu[0] == static_cast<std::uint8_t>(modbus::Function::write_registers);
+}
+
 Result<void> apply_modbus_option(const CellSpec& spec, const CellSpec::Option& option, ModbusCell& cell,
                                  TimePoint now) {
   if (option.key == "state") return {};
@@ -22,6 +43,7 @@ Result<void> apply_modbus_option(const CellSpec& spec, const CellSpec::Option& o
   const auto is_applied = apply_drive_option(spec, option, models, now);
   if (!is_applied) return fail(is_applied.error());
   if (*is_applied) return {};
+  if (option.key == "lie") return add_modbus_lies(spec, option, cell.lies);
   if (option.key == "damage") {
     const auto number = parse_digits(option.value, 10);
     if (!number || *number == 0 || *number > 1'000'000)
@@ -30,7 +52,7 @@ Result<void> apply_modbus_option(const CellSpec& spec, const CellSpec::Option& o
     return {};
   }
   if (option.key != "silent" && option.key != "delay") {
-    const std::string keys[] = {"state", "fault", "silent", "delay", "damage"};
+    const std::string keys[] = {"state", "fault", "silent", "delay", "damage", "lie"};
     return spec.wrong(
         fmt::format("'{}' is not an option of simulated Modbus drives: use {}", option.key, one_of(keys)));
   }
@@ -55,10 +77,20 @@ std::optional<ModbusCell::Answer> ModbusCell::on_message(modbus::Framing framing
     if (!to_all && unit->unit() != message.unit) continue;
     auto pdu = unit->on_request(message.pdu, to_all, now);
     if (!pdu || out) continue;
+    if (lies.unconfirmed && is_write(*pdu)) continue;
+    if (lies.is_short) pdu->pop_back();
     out = Answer{modbus::frame(framing, {message.unit, message.transaction, std::move(*pdu)}),
                  now + unit->delay()};
   }
-  if (out && damage != 0 && ++answered % damage == 0) out->bytes.back() ^= 0x10U;
+  if (!out) return out;
+  if (lies.late && answered % 2 == 0) out->time += kLateAnswer;
+  last_answer = out->time = std::max(out->time, last_answer);
+  ++answered;
+  if (damage != 0 && answered % damage == 0) out->bytes.back() ^= 0x10U;
+  if (lies.twice) {
+    const auto copy = out->bytes;
+    out->bytes.insert(out->bytes.end(), copy.begin(), copy.end());
+  }
   return out;
 }
 
