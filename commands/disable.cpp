@@ -33,9 +33,11 @@ report::Table state_table() {
 /// Nothing was stopped, or disabled, where nothing had power.
 std::string_view result_text(const motion::PowerDownResult& done, std::string_view done_word) {
   if (!done.outcome) return "failed";
-  if (done.had_power() == false) return "it had no power already";
+  if (done.had_power() == false) return "it was already disabled (power stage off; mains may be live)";
   const bool is_stop = done.quick_stop;
-  return is_stop && done.is_without_power() && !done.had_power() ? "it has no power" : done_word;
+  return is_stop && done.is_without_power() && !done.had_power()
+             ? "it is disabled (power stage off; mains may be live)"
+             : done_word;
 }
 
 /// What is known of one node now goes into the table and beside it.
@@ -100,7 +102,7 @@ Result<Value> power_down(Context& context, motion::PowerAim aim, std::string_vie
   if (there.empty())
     return fail(
         Errc::timeout, fmt::format("no node answered on {}", context.session->url()),
-        "what has power there keeps it: switch off the supply; then check cable, termination and bitrate");
+        "drives that are energised there stay so: switch off the supply; then check cable, termination and bitrate");
   auto table = state_table();
   context.nodes.clear();
   for (const auto& [node, result] : there) {

@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/shared_profile.hpp"
+#include "drive/topic_scope.hpp"
 #include "report/catalogue.hpp"
 #include "show/explanation.hpp"
 #include "show/topic_page.hpp"
@@ -44,7 +45,9 @@ Result<Shelf> open_shelf(Context& context) {
     auto topics = drive::load_topics(*context.profile, context.drive_folders);
     if (!topics) return fail(topics.error());
     leave_out_own(*topics);
-    topics->push_back(show::al_status_topic());
+    auto own = std::vector{show::al_status_topic()};
+    drive::remove_foreign_topics(own, *context.profile);
+    std::move(own.begin(), own.end(), std::back_inserter(*topics));
     out.libraries.push_back({context.profile, std::move(*topics), false});
     return out;
   }
@@ -138,8 +141,22 @@ Result<report::Value> all_topics(const Context& context, const Shelf& shelf) {
   return answer(show::topic_list(all, context.chinese, page_width(context)), all);
 }
 
+/// Whether the standard explains these words, which the family's data exclude.
+bool is_of_the_standard_alone(const Context& context, std::string_view said) {
+  if (context.profile == nullptr || context.profile->is_generic()) return false;
+  const auto standard = drive::shared_profile(drive::kStandardFamily, context.drive_folders);
+  auto topics = standard ? drive::load_own_topics(**standard) : Result<std::vector<drive::Topic>>();
+  if (!standard || !topics) return false;
+  topics->push_back(show::al_status_topic());
+  const std::vector<show::Library> shelf{{standard->get(), std::move(*topics), false}};
+  return !show::explanations(show::TopicQuery(said), shelf, false).empty();
+}
+
 tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf, std::string_view said) {
   const auto family = context.profile == nullptr ? std::string() : context.profile->family;
+  if (is_of_the_standard_alone(context, said))
+    return fail(Errc::negative, fmt::format("not on this drive: {} has no '{}'", family, said),
+                fmt::format("`explain {}` without -d shows the meaning in the standard", said));
   auto hint = did_you_mean(said, show::explained_names(shelf.libraries));
   if (hint.empty())
     hint =

@@ -37,7 +37,7 @@ Result<void> take_over(Context& context, session::EtherCatNetwork& ring) {
   if (!foreign) return fail(foreign.error());
   if (foreign->empty()) return {};
   const auto question = fmt::format(
-      "Take {} over from another master? If that master still runs, both write to it; a motor with power loses it.",
+      "Take {} over from another master? If that master still runs, both write to it; an energised motor is de-energised and coasts.",
       list(*foreign));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   std::vector<motion::PowerDownPlan> plans;
@@ -103,9 +103,9 @@ Result<Value> run_state_command(Context& context, const Arguments& arguments) {
 }
 
 constexpr std::string_view kDown =
-    "The slave confirms it, or says why not (AL status code). A drive that has power is refused: `disable` it "
-    "first, it would lose its power in motion. With --take-over, slaves that a master which is gone left in "
-    "SAFE-OP or OP are taken; asks first, and takes their power away.";
+    "The slave confirms it, or says why not (AL status code). An energised drive is refused, because it "
+    "would be de-energised in motion: `disable` it first. With --take-over, slaves that a master which is gone left in "
+    "SAFE-OP or OP are taken; asks first, and de-energises them.";
 
 constexpr std::string_view kUp =
     "Its PDOs stay as assigned if they carry controlword and statusword; else those of its family are assigned "
@@ -113,7 +113,7 @@ constexpr std::string_view kUp =
     "with 0, so nothing moves; the drive is not enabled. The state is held only as long as servoctl sends "
     "process data: in the prompt and in a batch file to their end, by itself until Ctrl-C. Then the slave goes "
     "back to PRE-OP. With --take-over, slaves that a master which is gone left in SAFE-OP or OP are taken; asks "
-    "first, and takes their power away.";
+    "first, and de-energises them.";
 
 constexpr std::string_view kStateElsewhere =
     "on CAN `nmt start`, `nmt stop` and `nmt preop` change the state of a node";

@@ -16,8 +16,8 @@ bool has_key(std::string_view line, std::string_view key) {
 /// The headings of tables, and the lines that hold the keys of a head, where each stands at the beginning of
 /// a line of its own.
 std::string lines_of_heads(std::string_view toml) {
-  constexpr std::array<std::string_view, 4> kKeys{"kind", "name", "object", "value"};
-  constexpr std::string_view kFirstLetters = "[knovp";  // Of most lines they settle it.
+  constexpr std::array<std::string_view, 6> kKeys{"kind", "name", "object", "value", "network", "mode"};
+  constexpr std::string_view kFirstLetters = "[kmnovp";  // Of most lines they settle it.
   std::string out;
   for (const auto line : split(toml, '\n')) {
     if (line.empty() || kFirstLetters.find(line.front()) == std::string_view::npos) continue;
@@ -39,7 +39,8 @@ std::optional<Topic> head_in(const toml::node& node, std::string_view family) {
   };
   bool picture = false;
   const bool right = take("kind", out.kind) && take("name", out.name) && take("object", out.object) &&
-                     take("value", out.value) && take("picture", picture);
+                     take("value", out.value) && take("network", out.network) && take("mode", out.mode) &&
+                     take("picture", picture);
   if (!right || out.kind.empty() || out.name.empty()) return std::nullopt;
   if (picture) out.picture = "-";
   return out;

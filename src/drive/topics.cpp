@@ -7,6 +7,7 @@
 #include "base/file.hpp"
 #include "base/folded.hpp"
 #include "base/text.hpp"
+#include "drive/topic_scope.hpp"
 
 namespace servoctl::drive {
 namespace fs = std::filesystem;
@@ -69,6 +70,7 @@ Result<std::vector<Topic>> read_all(const Profile& profile, std::span<const fs::
     if (!topics) return fail(topics.error());
     add_behind(out, std::move(*topics));
   }
+  remove_foreign_topics(out, profile);
   return out;
 }
 

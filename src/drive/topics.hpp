@@ -49,6 +49,8 @@ struct Topic {
   bool figure = false;                  ///< The manual has part of it only as a picture.
   std::optional<ObjectAddress> object;  ///< With `value`: the topic is what this value of the object means.
   std::optional<std::int64_t> value;
+  std::string network;               ///< Applies to this network alone: `can` or `ethercat`; empty: to all.
+  std::optional<std::int64_t> mode;  ///< Applies where there is this mode of operation of CiA 402-2.
   std::string line;  ///< Lines of the manual, `6692-6711 6801`, or a clause of a standard: `CiA 301, 7.3.2`.
 };
 
@@ -74,8 +76,8 @@ Result<std::vector<Topic>> parse_topic_heads(std::string_view toml, std::string_
 Result<std::vector<Topic>> load_own_topics(const Profile& profile);
 
 /// All topics of a family: its own, those of its parents, those of the standard. One of the same name, or of
-/// the same value of an object, takes the place of those behind it, unless only they have a picture. Errors
-/// as parse_topics().
+/// the same value of an object, takes the place of those behind it, unless only they have a picture. Without
+/// topics of the standard that do not apply to the family (topic_scope.hpp). Errors as parse_topics().
 Result<std::vector<Topic>> load_topics(const Profile& profile,
                                        std::span<const std::filesystem::path> folders);
 

@@ -92,6 +92,9 @@ class TopicsReader {
       return drive::get(n, out.kind) &&
              std::find(kTopicKinds.begin(), kTopicKinds.end(), out.kind) != kTopicKinds.end();
     };
+    const auto network = [&](const toml::node& n) {
+      return drive::get(n, out.network) && (out.network == "can" || out.network == "ethercat");
+    };
     const auto done = reader.read({{"kind", kind},
                                    {"name", into(out.name)},
                                    {"also", into(out.also)},
@@ -109,8 +112,13 @@ class TopicsReader {
                                    {"figure", into(out.figure)},
                                    {"object", into(out.object)},
                                    {"value", into(out.value)},
+                                   {"network", network},
+                                   {"mode", into(out.mode)},
                                    {"line", source(out.line)}},
-                                  {{"kind", kKindForm}, {"line", kLineForm}, {"object", R"("0x6098:00")"}});
+                                  {{"kind", kKindForm},
+                                   {"line", kLineForm},
+                                   {"object", R"("0x6098:00")"},
+                                   {"network", "can or ethercat"}});
     if (!done) return done;
     if (const auto whole = check(table, out); !whole) return whole;
     topics_.push_back(std::move(out));

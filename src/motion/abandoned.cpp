@@ -65,7 +65,7 @@ void stop_abandoned(show::Desk& desk, const std::set<std::uint8_t>& nodes) {
   for (const auto node : nodes) {
     if (is_at_rest(session, node)) continue;
     desk.tell(fmt::format(
-        "warning: node {} has power or does not tell, and the client that enabled it is gone: stopping it\n",
+        "warning: node {} is energised or does not report its state, and the client that enabled it is gone: stopping it\n",
         node));
     plans.emplace_back();
     plans.back().node = node;

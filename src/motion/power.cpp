@@ -19,9 +19,8 @@ constexpr int kMostTransitions = 12;
 
 Error enabled_by_others(std::uint8_t node, DriveState state) {
   if (state == DriveState::fault_reaction_active || state == DriveState::quick_stop_active)
-    return drive_error(
-        Errc::refused, node, fmt::format("it is in {}", drive::name(state)),
-        "nothing was moved; `status` and `fault show` say why, `disable` takes its power away");
+    return drive_error(Errc::refused, node, fmt::format("it is in {}", drive::name(state)),
+                       "nothing was moved; `status` and `fault show` say why, `disable` de-energises it");
   return drive_error(Errc::refused, node,
                      fmt::format("it was enabled by somebody else: it is in {}", drive::name(state)),
                      "nothing was moved; `disable` it if no other master controls it");

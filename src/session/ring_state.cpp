@@ -29,7 +29,7 @@ Result<void> check_without_power(Session& session, std::uint8_t node) {
     return fail(power.error());
   if (!power || !*power) return {};
   return fail(drive_error(Errc::refused, node,
-                          "it is energised: a change of its AL state would cut its power",
+                          "it is energised: a change of its AL state would de-energise it in motion",
                           fmt::format("`disable -n {}` first", node)));
 }
 

@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <initializer_list>
+#include <set>
 
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
+#include "drive/topic_scope.hpp"
 #include "drive/topics.hpp"
 #include "tests/source_dir.hpp"
 
@@ -91,6 +94,44 @@ TEST_P(TopicData, NamesObjectsAndValuesThatTheDictionaryHas) {
     const auto value = od::parse_value(target.entry->type, std::to_string(*topic.value));
     ASSERT_TRUE(value) << topic.name;
     EXPECT_TRUE(check_limits(meaning(target, 1), *value)) << topic.name << ": " << *topic.value;
+  }
+}
+
+/// Of a drive the standard explains what it has, and nothing else.
+TEST(TopicScope, LeavesOutWhatTheFamilyDoesNotHave) {
+  const auto names_for = [](const char* family) {
+    const auto profile = load_profile(family, kFolders);
+    std::set<std::string> out;
+    for (const auto& topic : *load_topics(*profile, kFolders))
+      if (topic.family == kStandardFamily) out.insert(topic.name);
+    return out;
+  };
+  const auto lacks = [&](const char* family, std::initializer_list<const char*> names) {
+    const auto known = names_for(family);
+    for (const auto* name : names) EXPECT_FALSE(known.contains(name)) << family << ": " << name;
+  };
+  const auto has = [&](const char* family, std::initializer_list<const char*> names) {
+    const auto known = names_for(family);
+    for (const auto* name : names) EXPECT_TRUE(known.contains(name)) << family << ": " << name;
+  };
+  lacks("gsd600", {"AL states", "OP", "EtherCAT RUN LED", "csp", "statusword csp", "quick stop option code",
+                   "homing method 37"});
+  has("gsd600", {"heartbeat", "termination", "statusword ip", "home offset"});
+  lacks("sv2", {"heartbeat", "termination", "NMT states", "COB-ID", "homing method 5", "statusword ip"});
+  has("sv2", {"AL states", "statusword csp", "EMCY"});
+  lacks("ts", {"AL states", "homing method 33", "ip"});
+  lacks("dm", {"quick stop option code", "statusword csp", "modes of operation"});
+  has("cia402", {"heartbeat", "AL states", "homing method 5", "statusword csp", "quick stop option code"});
+}
+
+TEST(TopicScope, ListsOnlyTheHomingMethodsOfTheFamily) {
+  const auto profile = load_profile("sv2", kFolders);
+  for (const auto& topic : *load_topics(*profile, kFolders)) {
+    if (topic.name != "homing methods" || topic.family != kStandardFamily) continue;
+    std::vector<std::string> methods;
+    for (const auto& row : topic.rows) methods.push_back(row.cells.front());
+    EXPECT_FALSE(methods.empty());
+    EXPECT_EQ(std::count(methods.begin(), methods.end(), "5"), 0);
   }
 }
 
