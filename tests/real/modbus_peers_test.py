@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Modbus against other stacks: the server of libmodbus, and pymodbus as server and as client of a simulated drive.
-Both are Debian packages that `./dev` installs.
+"""Modbus against other stacks: the server of libmodbus, pymodbus as server and as client of a simulated drive, mbpoll as its client.
+All are Debian packages that `./dev` installs.
 usage: modbus_peers_test.py SERVOCTL"""
 import atexit
 import json
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -94,6 +95,25 @@ print("good")
 """
 
 
+def mbpoll(kind, where, *words):
+    """What one question of mbpoll answers: references from 0, registers of 16 bits."""
+    how = ["-m", "tcp", "-p", where] if kind == "tcp" else ["-m", "rtu", "-b", "19200", "-P", "none"]
+    target, values = ("127.0.0.1" if kind == "tcp" else where), [word for word in words if not word.startswith("-r")]
+    reference = next(word for word in words if word.startswith("-r"))
+    done = subprocess.run(["mbpoll", *how, "-a", "1", "-0", "-1", "-q", "-t", "4", reference, target, *values], capture_output=True, text=True,
+                          timeout=30)
+    return done.returncode, done.stdout + done.stderr
+
+
+def ask_by_mbpoll(kind, where):
+    answer = mbpoll(kind, where, "-r51", "250")
+    check(f"mbpoll over {kind}: a register is written {answer}", answer[0] == 0)
+    answer = mbpoll(kind, where, "-r51")
+    check(f"mbpoll over {kind}: it is read {answer}", answer[0] == 0 and re.search(r"\[51\]:\s+250", answer[1]))
+    answer = mbpoll(kind, where, "-r1280")
+    check(f"mbpoll over {kind}: a register that is not there is refused {answer}", "Illegal data address" in answer[1])
+
+
 def run(bus, *words):
     return subprocess.run([servoctl, "-b", bus, *words], env=env, capture_output=True, text=True, cwd=folder)
 
@@ -160,6 +180,8 @@ if there.returncode == 0:
         client = python(PYMODBUS_CLIENT, kind, str(port) if kind == "tcp" else line.ends[1])
         told = client.communicate(timeout=30)[0]
         check(f"pymodbus asks a simulated drive over {kind}\n{told}", "good" in told)
+        if kind != "ascii":  # It does not speak it.
+            ask_by_mbpoll(kind, str(port) if kind == "tcp" else line.ends[1])
         drive.terminate()
         drive.wait()
         line.close()
