@@ -6,7 +6,9 @@
 #include "canopen/node_list.hpp"
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
+#include "motion/other_axes.hpp"
 #include "motion/power.hpp"
+#include "session/option_scope.hpp"
 #include "show/planned_messages.hpp"
 #include "show/records.hpp"
 
@@ -61,6 +63,18 @@ void tell_power_off(Context& context, std::uint8_t node, const motion::PowerDown
             : fmt::format("NODE {} MAY BE ENERGISED, STATE UNKNOWN: SWITCH OFF THE SUPPLY", node));
 }
 
+/// The end state of a node is that of all its axes.
+void stop_other_axes(Context& context, std::uint8_t node, motion::PowerAim aim) {
+  const session::Deaf deaf(*context.session);
+  auto others = motion::other_axes(*context.session, context.profile, node);
+  if (others.empty()) return;
+  if (const auto stopped =
+          motion::stop_axes(*context.session, node, others, aim == motion::PowerAim::disable);
+      !stopped)
+    context.errors.push_back(stopped.error());
+  for (const auto& axis : others) context.notices.push_back(fmt::format("node {}: {}", node, axis.text()));
+}
+
 Value planned_disable(const Context& context, motion::PowerAim aim) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes)
@@ -108,6 +122,7 @@ Result<Value> power_down(Context& context, motion::PowerAim aim, std::string_vie
   for (const auto& [node, result] : there) {
     context.nodes.push_back(node);
     tell_power_off(context, node, *result, aim, done_word, table);
+    if (!result->silent) stop_other_axes(context, node, aim);
   }
   return Value(std::move(table));
 }

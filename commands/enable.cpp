@@ -23,7 +23,7 @@ using namespace command;
 using report::Show;
 using report::Value;
 
-constexpr Parameter kEnableParameters[] = {kTurnOption};
+constexpr Parameter kEnableParameters[] = {kTurnOption, kPanelOption, kIgnoreRemoteOption};
 
 /// Up to "operation enabled" with harmless targets. On every other way out the drive is de-energised.
 Result<void> energise(Context& context, motion::Motion& motion, session::Rehearsal& rehearsal) {
@@ -58,7 +58,8 @@ Result<void> look_at(Context& context, motion::Motion& motion) {
   // Where it stays energised after servoctl has gone nothing can watch servoctl.
   if (context.session->network().carries(session::LifeSign::Kind::process_data))
     if (const auto found = motion.find_watchdog(); !found) return found;
-  auto items = motion::preflight(*context.session, motion.units(), motion.node(), context.chinese);
+  if (const auto possible = motion.intend({drive::Use::enable}); !possible) return possible;
+  auto items = motion.look_at_drive(context.chinese);
   if (!items) return fail(items.error());
   items->push_back(watchdog_of(context, motion));
   context.tell(motion::preflight_text(*items, context.chinese));

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "canopen/cob_id.hpp"
 #include "drive/standard_objects.hpp"
 
@@ -12,6 +13,22 @@ namespace {
 std::optional<std::uint64_t> number(const Arguments& arguments, std::string_view name) {
   const auto value = parse_integer(arguments.text(name));
   return value && !value->negative ? std::optional(value->magnitude) : std::nullopt;
+}
+
+/// `NAME=VALUE,NAME=VALUE`.
+Result<motion::PanelValues> panel_values(std::string_view text) {
+  motion::PanelValues out;
+  for (const auto part : split(text, ',')) {
+    const auto equals = part.find('=');
+    const auto value =
+        equals == std::string_view::npos ? std::nullopt : parse_integer(part.substr(equals + 1));
+    const auto number = value ? value->as_signed() : std::nullopt;
+    if (!number || equals == 0)
+      return fail(Errc::usage, fmt::format("--panel: '{}' is not NAME=VALUE", part),
+                  "such as --panel PA-20=0");
+    out[std::string(part.substr(0, equals))] = *number;
+  }
+  return out;
 }
 
 }  // namespace
@@ -28,6 +45,7 @@ Result<motion::MotionOptions> motion_options(const Context& context, const Argum
   out.max_torque = arguments.text("--max-torque");
   out.max_following_error = arguments.text("--max-following-error");
   out.window = arguments.text("--window");
+  out.ignores_remote = arguments.has("--ignore-remote");
   out.unheard = [&context] { return context.audience_is_gone(); };
   for (const auto& [name, place] : {std::pair("--turn", &out.turn), std::pair("--encoder", &out.encoder)}) {
     if (!arguments.has(name)) continue;
@@ -36,6 +54,11 @@ Result<motion::MotionOptions> motion_options(const Context& context, const Argum
       return fail(Errc::usage, fmt::format("'{}' is not a number of counts", arguments.text(name)),
                   "such as 131072 for 17 bits");
     *place = static_cast<double>(*counts);
+  }
+  if (arguments.has("--panel")) {
+    auto panel = panel_values(arguments.text("--panel"));
+    if (!panel) return fail(panel.error());
+    out.panel = std::move(*panel);
   }
   if (!arguments.has("--master-node")) return out;
   const auto id = number(arguments, "--master-node");

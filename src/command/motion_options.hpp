@@ -16,6 +16,14 @@ inline constexpr Parameter kTurnOption{
     .name = "--turn",
     .help = "increments of 6064h per motor revolution, if the drive does not report it",
     .kind = Kind::number};
+inline constexpr Parameter kPanelOption{
+    .name = "--panel",
+    .help = "PA-20=0,PA-74=1: what the drive's panel shows, for parameters that cannot be read over the bus",
+    .kind = Kind::value};
+inline constexpr Parameter kIgnoreRemoteOption{
+    .name = "--ignore-remote",
+    .help = "go on, after a question, although statusword bit 9 (remote) is 0",
+    .kind = Kind::flag};
 /// What every motion takes.
 inline constexpr std::array kMotionOptions{
     Parameter{.name = "--limit", .help = "speed limit; raises the safe default", .kind = Kind::value},
@@ -26,6 +34,8 @@ inline constexpr std::array kMotionOptions{
         .name = "--max-following-error", .help = "stop above this following error", .kind = Kind::value},
     Parameter{.name = "--window", .help = "stop when it has moved further than this", .kind = Kind::value},
     kTurnOption,
+    kPanelOption,
+    kIgnoreRemoteOption,
     Parameter{.name = "--master-node", .help = "node-ID of servoctl for the watchdog", .kind = Kind::number},
     Parameter{.name = "--plot", .help = "plot the samples over time at the end", .kind = Kind::flag},
 };

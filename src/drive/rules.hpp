@@ -11,6 +11,7 @@
 
 #include "base/object_address.hpp"
 #include "base/result.hpp"
+#include "drive/caution.hpp"
 #include "drive/cia402.hpp"
 #include "drive/modbus_rules.hpp"
 #include "drive/pdo_recipe.hpp"
@@ -223,20 +224,6 @@ struct FaultRules {
   std::string following_alarm;  ///< … of a following error; empty: 8611h (CiA 402-2).
 };
 
-/// A setting that makes motion more dangerous than it looks, often from the factory.
-struct Caution {
-  std::string name;                       ///< Parameter or object; empty: it always holds.
-  std::optional<std::int64_t> value;      ///< It holds while `name` has this value,
-  std::optional<std::int64_t> not_value;  ///< or has any but this one.
-  std::string text;
-  std::string text_zh;
-
-  bool is_conditional() const { return value || not_value; }
-  bool holds(double now) const {
-    return value ? now == static_cast<double>(*value) : !not_value || now != static_cast<double>(*not_value);
-  }
-};
-
 /// The manual's own words for an abort code; empty in the language it does not use.
 struct AbortText {
   std::string text;
@@ -278,6 +265,7 @@ struct Rules {
   std::vector<ObjectAddress> mirror_add_node_id;
   /// By DriveState, fault last; by default those of CiA 402-2 with bits 4 and 9 set.
   std::array<std::uint16_t, 8> statusword{0x0000, 0x0250, 0x0231, 0x0233, 0x0237, 0x0217, 0x021F, 0x0218};
+  bool remote_bit = true;  ///< Bit 9 (remote) of the statusword says whether the drive obeys the bus.
   std::vector<ModeBits> mode_bits;
   std::vector<std::int64_t> quick_stop_stays_enabled;
 

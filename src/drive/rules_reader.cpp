@@ -201,6 +201,7 @@ Result<void> read_statusword(const TableReader& reader, Rules& rules) {
                       {"quick_stop_active", word(DriveState::quick_stop_active)},
                       {"fault_reaction_active", word(DriveState::fault_reaction_active)},
                       {"fault", word(DriveState::fault)},
+                      {"remote_bit", into(rules.remote_bit)},
                       {"mode_bits", list_into(rules.mode_bits)}});
 }
 
@@ -278,14 +279,6 @@ Result<void> read_fault(const TableReader& reader, Rules& rules) {
                       {"range_alarm", into(out.range_alarm)},
                       {"access_alarm", into(out.access_alarm)},
                       {"following_alarm", into(out.following_alarm)}});
-}
-
-Result<void> read_caution(const TableReader& reader, Caution& out) {
-  return reader.read({{"name", into(out.name)},
-                      {"value", into(out.value)},
-                      {"not", into(out.not_value)},
-                      {"text", into(out.text)},
-                      {"text_zh", into(out.text_zh)}});
 }
 
 }  // namespace servoctl::drive

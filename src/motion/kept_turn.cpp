@@ -9,6 +9,7 @@
 #include "show/bus_name.hpp"
 #include "show/field_reader.hpp"
 #include "show/identity.hpp"
+#include "show/known_drive.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -110,9 +111,27 @@ Result<bool> TurnFile::remove() const {
   return removed;
 }
 
+namespace {
+
+/// What --turn was for this very drive, in a line that worked.
+std::optional<double> told_earlier(const show::Desk& desk, std::uint8_t node) {
+  if (desk.state_folder.empty()) return std::nullopt;
+  const auto said = show::KnownDriveFile(desk.state_folder, desk.session->url(), node).read();
+  if (!said || !*said || (*said)->family != desk.profile->family) return std::nullopt;
+  const auto turn = parse_digits((*said)->turn, 10);
+  if (!turn || *turn < 2) return std::nullopt;
+  const auto now = session::read_identity(*desk.session, node);
+  if (!now || !show::change_of((*said)->identity, *now).empty()) return std::nullopt;
+  return static_cast<double>(*turn);
+}
+
+}  // namespace
+
 KnownTurn find_turn(const show::Desk& desk, std::uint8_t node) {
   KnownTurn out;
-  if (desk.profile == nullptr || desk.profile->rules.learn.speed.empty()) return out;
+  if (desk.profile == nullptr) return out;
+  out.told_earlier = told_earlier(desk, node);
+  if (desk.profile->rules.learn.speed.empty()) return out;
   const auto kept = TurnFile(desk, node).read();
   if (!kept) out.unused = kept.error().message;
   if (!kept || !*kept) return out;

@@ -47,8 +47,11 @@ struct KnownTurn {
   std::optional<double> counts;
   std::optional<KeptTurn> kept;  ///< Whether it is used or not.
   std::string unused;            ///< Why what is kept is not used; else empty.
+  /// Increments of 6064h in a turn that an earlier line told (--turn) for the drive that is there now.
+  std::optional<double> told_earlier;
 };
-/// What is kept for this node, held against family and identity. Asks the drive only where something is kept.
+/// What is kept for this node, compared with family and identity. Asks the drive only where something is
+/// kept.
 KnownTurn find_turn(const show::Desk& desk, std::uint8_t node);
 
 /// What is made of parameters that take effect by a restart may be set and not in force: which of them, and

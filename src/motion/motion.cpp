@@ -9,6 +9,7 @@
 #include "drive/soft_ramp.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
+#include "motion/other_axes.hpp"
 #include "motion/producer_claim.hpp"
 
 namespace servoctl::motion {
@@ -36,13 +37,27 @@ Motion::Motion(session::Session& session, const drive::Profile& profile, std::ui
       power_(session, profile, node) {}
 
 Result<void> Motion::prepare() {
-  if (const auto alive = power_.statusword(); !alive) return fail(alive.error());
+  if (const auto alive = power_.statusword(); !alive) return fail(without_first_axis(alive.error()));
   units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder,
                                          options_.learned, options_.load);
   monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
+  auto panel = checked_panel(*profile_, options_.panel);
+  if (!panel) return fail(panel.error());
+  options_.panel = std::move(*panel);
   if (const auto done = read_limits(); !done) return done;
   speed_cap_ = find_speed_cap();
   return {};
+}
+
+/// A device may have a second axis and no first one.
+Error Motion::without_first_axis(Error error) const {
+  if (error.code != Errc::sdo_abort) return error;
+  const auto others = other_axes(*session_, profile_, node_);
+  if (others.empty()) return error;
+  return drive_error(Errc::refused, node_,
+                     fmt::format("it has no axis 1 ({}), which servoctl commands: {}",
+                                 to_string(objects::kStatusword), others.front().text()),
+                     "servoctl cannot command another axis yet; `read` and `write` reach its objects");
 }
 
 Result<void> Motion::find_watchdog() {
@@ -56,7 +71,7 @@ Result<void> Motion::find_watchdog() {
 }
 
 Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
-  auto items = preflight(*session_, *units_, node_, chinese);
+  auto items = look_at_drive(chinese);
   if (!items) return items;
   // What refuses the motion needs no second of listening.
   if (check_preflight(*items, node_)) {
@@ -71,13 +86,8 @@ Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
              "make it {}: where they are right, speeds and ways are {} times what is asked for",
              plain_number(*units_->turn(), 12), plain_number(*other, 12),
              number_text(*units_->turn() / *other))});
-  const auto speeds = units_->unit(objects::kTargetVelocity);
-  if (speed_cap_ && options_.speed_limit.empty() && speeds != "rpm")
-    items->push_back(
-        {PreflightItem::Weight::caution, "speed",
-         fmt::format("the counts of a turn are not known (--turn), so no limit in rpm holds: it is {} {}, a "
-                     "tenth of what the drive allows",
-                     number_text(*speed_cap_), speeds.empty() ? std::string("of its unit") : speeds)});
+  if (speed_cap_ && options_.speed_limit.empty() && supposed_turn_)
+    items->push_back({PreflightItem::Weight::caution, "speed", unconverted_limit()});
   return items;
 }
 

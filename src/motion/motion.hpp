@@ -30,6 +30,11 @@ struct MotionOptions {
   std::string max_following_error;       ///< Of 60F4h.
   std::string window;                    ///< Of 6064h.
   std::function<void(const MotionSample&)> on_sample;
+  /// Increments in one turn that were told for this drive earlier: they decide what speed needs no --limit,
+  /// and convert nothing.
+  std::optional<double> supposed_turn;
+  PanelValues panel;              ///< As they were written, until Motion::prepare().
+  bool ignores_remote = false;    ///< As PreflightRequest::ignores_remote.
   bool rehearsal = false;         ///< Nothing is to be sent: the bus is not listened to for a second.
   std::function<bool()> unheard;  ///< Nobody takes the samples any more: the motion ends. May be empty.
 };
@@ -57,10 +62,9 @@ struct MotionPlan;
 /// begin(), then watch() as often as needed, finish().
 class Motion {
  public:
-  /// Speed that needs no --limit, where it can be told in rpm.
+  /// Speed that needs no --limit. Where the counts of a turn are not known it is one by those that were told
+  /// earlier, else by the fewest that the family's motors have.
   static constexpr double kSafeRpm = 300;
-  /// Else this part of the drive's own maximum.
-  static constexpr double kSafePart = 0.1;
   /// Time in which a motion reaches its speed, and comes to rest, unless told otherwise.
   static constexpr double kRampSeconds = 0.5;
 
@@ -68,9 +72,14 @@ class Motion {
 
   /// Only reads: units, the limits the user gave.
   Result<void> prepare();
+  /// What the motion is for: called by plan_…(). Errc::refused, with what to change, where a setting of the
+  /// drive makes it impossible: a homing method whose switch the drive ignores.
+  Result<void> intend(const Purpose& purpose);
   /// Which watchdog there is: only reads, and listens for up to kListening. look() and begin() do it as well.
   Result<void> find_watchdog();
   Result<std::vector<PreflightItem>> look(bool chinese);
+  /// The part of look() that is about the drive alone.
+  Result<std::vector<PreflightItem>> look_at_drive(bool chinese);
 
   /// Looks once more, because a person may have taken time to answer: Errc::refused when somebody else has
   /// enabled the drive meanwhile. Then arms the watchdog, sets the mode, makes the targets harmless, writes
@@ -93,6 +102,9 @@ class Motion {
   /// The greatest speed that the drive allows (607Fh, 6080h), in the unit of 60FFh; empty where it does not
   /// tell it in that unit.
   std::optional<double> fastest() const;
+  /// Whether nothing tells what a speed is in rpm, not even at worst: then every speed has to be said, and
+  /// --limit as well.
+  bool is_speed_unproven() const { return speed_unproven_; }
   /// Errc::refused when the speed is above speed_cap().
   Result<void> check_speed(double speed) const;
   /// Stops the motion above this speed, in the unit of 60FFh. False where the drive tells its speed in
@@ -147,8 +159,13 @@ class Motion {
   Result<void> look_again();
   Result<void> make_ready(MotionGuard& guard, std::int8_t mode, const std::vector<MotionSetting>& settings,
                           std::optional<ObjectAddress> kept_target, session::Rehearsal& rehearsal);
+  Error without_first_axis(Error error) const;
   Result<void> read_limits();
   Result<double> find_speed_cap();
+  Result<double> find_unconverted_cap(std::optional<double> most);
+  std::optional<double> supposed_turn();
+  std::string unconverted_limit() const;
+  Result<std::optional<double>> cap_of_cautions(ObjectAddress as, std::string drive::Caution::*text) const;
   /// A limit that the user gave: more than 0, because it holds either way.
   Result<double> parse_limit(ObjectAddress object, std::string_view option, const std::string& text) const;
   /// What an object of the drive says in the unit of `as`, when it can be said so and is above 0.
@@ -166,6 +183,10 @@ class Motion {
   bool watchdog_found_ = false;
   Result<double> speed_cap_ = 0.0;
   double standstill_ = 0;
+  std::optional<Purpose> purpose_;
+  bool speed_unproven_ = false;
+  std::optional<double>
+      supposed_turn_;               ///< Increments by which kSafeRpm was converted, for want of known ones.
   std::string turn_unchecked_;      ///< Why the counts of a turn were not held against the monitor.
   std::optional<double> told_rpm_;  ///< The speed of this motion, where it is told in rpm; above 0.
   int fast_looks_ = 0;              ///< In a row, at which the monitor showed a motor that turns too fast.

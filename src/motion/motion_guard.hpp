@@ -91,6 +91,7 @@ class MotionGuard {
   void disarm();
   void put_node_back();
   void return_to_op();
+  void tell_other_axes();
   void verify();
   void note(const std::string& what, const Error& error);
 

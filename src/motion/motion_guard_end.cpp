@@ -8,6 +8,7 @@
 #include "motion/kept_op.hpp"
 #include "motion/motion_guard.hpp"
 #include "motion/operation_mode.hpp"
+#include "motion/other_axes.hpp"
 #include "session/identify.hpp"
 #include "session/link_wait.hpp"
 #include "session/option_scope.hpp"
@@ -166,6 +167,13 @@ void MotionGuard::disarm() {
   watchdog_.reset();
 }
 
+/// What somebody else does with another axis of the node is part of how it is left.
+void MotionGuard::tell_other_axes() {
+  const session::Hurry hurry(*session_, kEndPatience, 1);
+  for (const auto& axis : other_axes(*session_, &units_->profile(), node_))
+    (axis.may_be_energised() ? result_.left : result_.notes).push_back(axis.text());
+}
+
 void MotionGuard::verify() {
   const auto end = session_->now() + Power::kPatience;
   for (;;) {
@@ -177,6 +185,7 @@ void MotionGuard::verify() {
     // A fault reaction takes its time.
     if (result_.verified || session_->now() >= end || !pause(*session_, kEndPause)) break;
   }
+  tell_other_axes();
   // Either of two may have told it.
   const auto single = session::refuse_duplicate(*session_, node_);
   if (single || !result_.verified) return;

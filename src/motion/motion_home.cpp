@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "base/number.hpp"
+#include "drive/homing_method.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
 #include "motion/operation_mode.hpp"
@@ -11,8 +12,6 @@
 namespace servoctl::motion {
 namespace {
 
-/// Methods that take the present position for home (CiA 402-2): they may be done before anybody looks.
-constexpr std::array<std::int64_t, 2> kAtOnce{35, 37};
 constexpr Duration kStart = std::chrono::seconds(1);
 constexpr double kNearHomeDegrees = 1;
 constexpr double kNearHomeCounts = 100;
@@ -24,8 +23,9 @@ constexpr double kWindows = 3;
 constexpr double kIndexTurns = 2;
 constexpr Duration kHomeSettling = std::chrono::seconds(5);
 
+/// Such a method may be done before anybody looks.
 bool takes_present_position(const MotionPlan& plan) {
-  return std::find(kAtOnce.begin(), kAtOnce.end(), static_cast<std::int64_t>(plan.value)) != kAtOnce.end();
+  return drive::stays_put(static_cast<std::int64_t>(plan.value));
 }
 
 class Homing {
@@ -135,6 +135,7 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
   if (meaning.labels != nullptr && label == nullptr)
     return fail(motion.error(Errc::refused, fmt::format("this family has no homing method {}", number),
                              "`objects 0x6098` lists them"));
+  if (const auto possible = motion.intend({drive::Use::home, number}); !possible) return possible;
   plan.value = static_cast<double>(number);
   plan.summary = fmt::format("{}{}", number, label != nullptr ? " (" + label->label + ")" : "");
   return {};
@@ -154,6 +155,7 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
             : "add --turn (6064h increments per revolution), if the drive does not report it"));
   // Where it stands is home: no speed is used, and the motor is stopped when it turns faster than its limit.
   const bool stays = takes_present_position(plan);
+  if (stays && motion.is_speed_unproven()) return *speed;
   if (const auto allowed = motion.check_speed(stays ? 0 : speed->value); !allowed)
     return fail(allowed.error());
   if (speed->value > 0 || stays) return *speed;
@@ -189,6 +191,8 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
         std::pair(objects::kHomingSpeedZero, &home.slow), std::pair(objects::kHomeOffset, &home.offset)})
     if (const auto added = add(motion, object, *text, plan); !added) return fail(added.error());
   if (const auto known = check_method(motion, plan); !known) return fail(known.error());
+  if (motion.is_speed_unproven() && home.fast.empty() && !takes_present_position(plan))
+    return fail(unproven_speed(motion));
   const auto fast = speed_of(motion, objects::kHomingSpeedSwitch, plan);
   if (!fast) return fail(fast.error());
   auto slow = *fast;

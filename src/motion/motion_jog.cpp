@@ -161,6 +161,7 @@ std::string jog_text(const std::string& speed, const Jog& jog) {
 Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
   const auto mode = motion.rules().velocity;
   if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
+  if (const auto possible = motion.intend({drive::Use::jog}); !possible) return fail(possible.error());
   MotionPlan plan;
   plan.mode = *mode;
   const auto data = motion.units().parse(objects::kTargetVelocity, jog.speed, MotionUnits::Kind::way);

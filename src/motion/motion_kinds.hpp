@@ -100,6 +100,9 @@ struct MotionPlan {
   }
 };
 
+/// A speed that nobody gave, of a drive of which nothing tells what it is in rpm.
+Error unproven_speed(const Motion& motion);
+
 Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog);
 MotionReport run_jog(Motion& motion, const Jog& jog, const MotionPlan& plan);
 

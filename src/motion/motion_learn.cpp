@@ -212,6 +212,7 @@ Result<void> check_units(const Motion& motion, const Learn& learn) {
 Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
   const auto mode = motion.rules().velocity;
   if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
+  if (const auto possible = motion.intend({drive::Use::jog}); !possible) return fail(possible.error());
   if (const auto counted = check_units(motion, learn); !counted) return fail(counted.error());
   if (const auto still = SpeedMonitor(motion, learn).check_still(); !still) return fail(still.error());
   MotionPlan plan;

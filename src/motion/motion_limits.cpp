@@ -113,8 +113,8 @@ Result<void> Motion::check_turn(const MotionSample& sample) {
   fast_looks_ = std::abs(**shown) > most ? fast_looks_ + 1 : 0;
   if (fast_looks_ < kOddLooks) return {};
   return fail(error(Errc::negative,
-                    fmt::format("turns at {} rpm by {}, but {} rpm were asked for",
-                                number_text(**shown), profile_->rules.learn.speed, number_text(*told_rpm_)),
+                    fmt::format("turns at {} rpm by {}, but {} rpm were asked for", number_text(**shown),
+                                profile_->rules.learn.speed, number_text(*told_rpm_)),
                     "its counts per revolution are probably wrong: `units learn` measures them, --turn takes "
                     "those of 6064h"));
 }
@@ -167,6 +167,10 @@ std::optional<double> Motion::fastest() const {
 Result<double> Motion::find_speed_cap() {
   const auto unit = units_->unit(objects::kTargetVelocity);
   auto most = fastest();
+  if (unit != "rpm") {
+    supposed_turn_ = supposed_turn();
+    speed_unproven_ = !supposed_turn_;
+  }
   if (!options_.speed_limit.empty()) {
     const auto asked = parse_limit(objects::kTargetVelocity, "--limit", options_.speed_limit);
     if (asked && most && *asked > *most) {
@@ -182,10 +186,11 @@ Result<double> Motion::find_speed_cap() {
   if (rated)
     if (const auto speed = read_as(objects::kTargetVelocity, *rated))
       most = std::min(*speed, most.value_or(*speed));
-  if (unit == "rpm") return std::min(kSafeRpm, most.value_or(kSafeRpm));
-  if (most) return *most * kSafePart;
-  return fail(Errc::usage, "a safe speed cannot be derived from this drive",
-              fmt::format("add --limit SPEED in {}", unit.empty() ? "the drive's own unit" : unit));
+  const auto rule = cap_of_cautions(objects::kTargetVelocity, &drive::Caution::speed);
+  if (!rule) return fail(rule.error());
+  if (*rule) most = std::min(**rule, most.value_or(**rule));
+  return unit == "rpm" ? Result<double>(std::min(kSafeRpm, most.value_or(kSafeRpm)))
+                       : find_unconverted_cap(most);
 }
 
 Result<void> Motion::check_speed(double speed) const {
@@ -205,11 +210,15 @@ Result<void> Motion::check_speed(double speed) const {
                       fmt::format("the speed of {} {} is above what the drive allows, {} {}", numbers.first,
                                   unit, numbers.second, unit),
                       "607Fh and 6080h set it"));
-  return fail(
-      error(Errc::refused,
-            fmt::format("the speed of {} {} is above the limit of {} {}", numbers.first, unit, numbers.second,
-                        unit),
-            fmt::format("`--limit {}{}` raises it, if the machine may move that fast", numbers.first, unit)));
+  auto hint = fmt::format("`--limit {}{}` raises it, if the machine may move that fast", numbers.first, unit);
+  if (supposed_turn_ && options_.speed_limit.empty())
+    hint = fmt::format("--turn gives the increments per revolution: with {} of them it would be {} rpm; {}",
+                       plain_number(*supposed_turn_, 12), number_text(std::abs(speed) / *supposed_turn_ * 60),
+                       hint);
+  return fail(error(Errc::refused,
+                    fmt::format("the speed of {} {} is above the limit of {} {}", numbers.first, unit,
+                                numbers.second, unit),
+                    std::move(hint)));
 }
 
 Result<double> Motion::torque_cap() const {
@@ -226,10 +235,13 @@ Result<double> Motion::torque_cap() const {
     }
     return asked;
   }
-  std::optional<double> rated;
-  if (unit == "%") rated = kRatedTorque;
+  const auto rule = cap_of_cautions(objects::kTargetTorque, &drive::Caution::torque);
+  if (!rule) return fail(rule.error());
+  std::optional<double> rated = *rule;
+  if (unit == "%") rated = std::min(kRatedTorque, rated.value_or(kRatedTorque));
   if (const auto object = units_->object(rules().rated_torque))
-    rated = read_as(objects::kTargetTorque, *object);
+    if (const auto told = read_as(objects::kTargetTorque, *object))
+      rated = std::min(*told, rated.value_or(*told));
   if (rated) return std::min(*rated, most.value_or(*rated));
   return fail(Errc::usage, "a safe torque cannot be derived from this drive",
               fmt::format("add --max-torque TORQUE in {}", unit.empty() ? "the drive's own unit" : unit));

@@ -192,6 +192,7 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
 Result<std::optional<Bytes>> move_speed(Motion& motion, const Move& move, ObjectAddress object,
                                         MotionPlan& plan) {
   if (move.speed.empty()) {
+    if (motion.is_speed_unproven()) return fail(unproven_speed(motion));
     const auto cap = motion.speed_cap();
     if (!cap) return fail(cap.error());
     return motion.units().bytes(object, *cap * kDefaultPart);
@@ -207,6 +208,7 @@ Result<std::optional<Bytes>> move_speed(Motion& motion, const Move& move, Object
 Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   const auto mode = motion.rules().position;
   if (!mode) return fail(motion.error(Errc::refused, "this family has no position mode"));
+  if (const auto possible = motion.intend({drive::Use::move}); !possible) return fail(possible.error());
   const auto& units = motion.units();
   const auto speed_object = units.object(motion.rules().position_speed);
   if (!speed_object || !units.has(*speed_object))

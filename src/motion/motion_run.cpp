@@ -88,12 +88,17 @@ Result<void> ask(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
       fmt::format("The motor of node {} will move: {}. Is the machine clear?", node, plan.summary));
 }
 
+void take(const KnownTurn& known, MotionOptions& options) {
+  options.learned = known.counts;
+  options.supposed_turn = known.told_earlier;
+}
+
 }  // namespace
 
 Result<void> check_motion(const show::Desk& desk, const MotionRequest& request,
                           const std::function<Result<MotionPlan>(Motion&)>& plan) {
   auto options = request.options;
-  if (!options.turn) options.learned = find_turn(desk, request.node).counts;
+  if (!options.turn) take(find_turn(desk, request.node), options);
   Motion motion(*desk.session, *desk.profile, request.node, std::move(options));
   auto ready = motion.prepare();
   if (ready)
@@ -111,7 +116,7 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
     if (const auto possible = check_writable(csv); !possible) return fail(possible.error());
   if (run.in_counts) options.turn.reset();
   const auto known = options.turn || run.in_counts ? KnownTurn{} : find_turn(desk, node);
-  options.learned = known.counts;
+  take(known, options);
   options.rehearsal = desk.dry_run;
   std::function<void(const MotionSample&)> display;
   options.on_sample = [&display](const MotionSample& sample) { display(sample); };

@@ -74,6 +74,7 @@ Result<void> check_torque(const Motion& motion, const Physical& torque) {
 Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
   const auto mode = motion.rules().torque;
   if (!mode) return fail(motion.error(Errc::refused, "this family has no torque mode"));
+  if (const auto possible = motion.intend({drive::Use::torque}); !possible) return fail(possible.error());
   const auto cap = motion.speed_cap();
   if (!cap) return fail(cap.error());
   if (*cap <= 0) return fail(Errc::usage, "a speed limit of 0 lets nothing move", "give --limit a speed");

@@ -62,8 +62,15 @@ Result<void> Power::command(std::uint16_t controlword) {
 }
 
 bool Power::tells(std::uint16_t bit) const {
+  if (bit == kRemote && !profile_->rules.remote_bit) return false;
   const auto& words = profile_->rules.statusword;
   return (words[static_cast<std::size_t>(DriveState::switched_on)] & bit) != 0;
+}
+
+std::string Power::start_command() const {
+  constexpr auto kStarted = session::NodeState::operational;
+  const auto now_in = session_->watch().state(node_);
+  return now_in == kStarted ? std::string() : session_->network().state_command(node_, kStarted);
 }
 
 /// 605Ah decides whether a quick stop can be left upwards.
@@ -93,13 +100,16 @@ Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
   if (now_in == DriveState::fault || now_in == DriveState::fault_reaction_active)
     hint = "`fault show` shows the fault";
   else if (tells(kRemote) && (statusword_ & kRemote) == 0)
-    hint = "bit 9 (remote) is 0: the drive obeys its panel or inputs, not the bus";
+    hint = fmt::format("bit 9 (remote) is 0: {}", kRemoteCauses);
   else if (tells(kVoltageEnabled) && (statusword_ & kVoltageEnabled) == 0)
     hint = "bit 4 (voltage enabled) is 0: is the main supply on?";
   else if (from == DriveState::switch_on_disabled)
     hint = "the manual's enable conditions are not met: emergency stop, main supply, enable input?";
   else
     hint = "the manual's conditions for enabling are not met: inputs, main supply, brake, mode";
+  const auto start = start_command();
+  if (!start.empty() && now_in != DriveState::fault && now_in != DriveState::fault_reaction_active)
+    hint = fmt::format("some drives obey only in the state operational: `{}`; {}", start, hint);
   return drive_error(Errc::negative, node_, what, hint);
 }
 

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,6 +22,10 @@ inline constexpr std::uint16_t kWarning = 1U << 7U;
 inline constexpr std::uint16_t kRemote = 1U << 9U;
 inline constexpr std::uint16_t kTargetReached = 1U << 10U;
 inline constexpr std::uint16_t kInternalLimit = 1U << 11U;
+
+/// Why bit 9 may be 0, besides a node that is not operational.
+inline constexpr std::string_view kRemoteCauses =
+    "its panel, its own software or an input controls it, or a parameter selects another source of commands";
 
 /// The power state of one drive, read and changed by SDO.
 class Power {
@@ -54,6 +60,9 @@ class Power {
   /// Whether the family sets this bit of the statusword whenever it is ready, so that a low one says
   /// something.
   bool tells(std::uint16_t bit) const;
+  /// `nmt start -n 1`, where the node is not known to be operational: some drives obey 6040h in that state
+  /// only.
+  std::string start_command() const;
 
  private:
   Result<void> take_down(PowerAim aim);

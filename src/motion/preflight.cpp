@@ -1,14 +1,17 @@
 #include "motion/preflight.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <array>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/operation_mode.hpp"
+#include "motion/other_axes.hpp"
 #include "motion/power.hpp"
 #include "report/catalogue.hpp"
+#include "show/caution_text.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -32,11 +35,13 @@ constexpr std::array kShown{
 
 class Preflight {
  public:
-  Preflight(session::Session& session, const MotionUnits& units, std::uint8_t node, bool chinese)
-      : session_(&session), units_(&units), node_(node), chinese_(chinese) {}
+  Preflight(session::Session& session, const MotionUnits& units, std::uint8_t node, bool chinese,
+            PreflightRequest request)
+      : session_(&session), units_(&units), node_(node), chinese_(chinese), request_(std::move(request)) {}
 
   Result<std::vector<PreflightItem>> run() {
     if (const auto done = look_at_state(); !done) return fail(done.error());
+    look_at_axes();
     if (const auto done = look_at_needs(); !done) return fail(done.error());
     if (const auto done = look_at_objects(); !done) return fail(done.error());
     if (const auto done = look_at_cautions(); !done) return fail(done.error());
@@ -73,12 +78,45 @@ class Preflight {
     if ((*word & kWarning) != 0) add(Weight::caution, "warning", "statusword bit 7 (warning) is set");
     if ((*word & kInternalLimit) != 0)
       add(Weight::caution, "limit", "statusword bit 11: internal limit active");
-    if (!asleep && power.tells(kRemote) && (*word & kRemote) == 0)
-      add(Weight::stop, "remote", "statusword bit 9 (remote) is 0: the drive obeys its panel, not the bus");
+    if (!asleep && power.tells(kRemote) && (*word & kRemote) == 0) add_remote(power);
     const auto mode = read_mode(*session_, node_);
     if (!mode) return fail(mode.error());
     add(Weight::good, "mode", mode_text(units_->profile(), *mode, chinese_));
     return {};
+  }
+
+  /// Until every command knows axes: which one is meant, and that nobody commands another.
+  void look_at_axes() {
+    const auto others = other_axes(*session_, &units_->profile(), node_);
+    if (others.empty()) return;
+    const bool energised = std::any_of(others.begin(), others.end(),
+                                       [](const OtherAxis& axis) { return axis.may_be_energised(); });
+    auto hint =
+        energised ? std::string("`disable` takes the power of all axes of the node away") : std::string();
+    items_.push_back(
+        {energised ? Weight::stop : Weight::caution, "axes", axes_text(others), std::move(hint)});
+  }
+
+  /// What a low bit 9 says differs from drive to drive; some set it in the state operational only.
+  void add_remote(const Power& power) {
+    const auto start = power.start_command();
+    auto text =
+        start.empty()
+            ? fmt::format("statusword bit 9 (remote) is 0, the drive may not obey the bus: {}", kRemoteCauses)
+            : fmt::format(
+                  "statusword bit 9 (remote) is 0, the drive may not obey the bus: {}; or it sets the bit in "
+                  "the state operational only",
+                  kRemoteCauses);
+    if (request_.ignores_remote) {
+      add(Weight::caution, "remote", std::move(text));
+      return;
+    }
+    auto hint =
+        start.empty()
+            ? std::string("return control to the bus; --ignore-remote goes on after a question")
+            : fmt::format("`{}`, or return control to the bus; --ignore-remote goes on after a question",
+                          start);
+    items_.push_back({Weight::stop, "remote", std::move(text), std::move(hint)});
   }
 
   Result<void> look_at_objects() {
@@ -123,23 +161,10 @@ class Preflight {
     add(limit ? Weight::caution : Weight::good, "inputs", fmt::format("60FDh is 0x{:08X}: {}", word, text));
   }
 
-  /// The number a caution or a need depends on; empty where nothing tells it.
-  Result<std::optional<double>> number(const std::string& name) {
-    const auto object = units_->object(name);
-    if (!object) return std::optional<double>();
-    const auto answer = session_->upload(node_, *object);
-    if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
-    if (!answer || answer->empty()) return std::optional<double>();
-    const auto meaning = drive::fitted(units_->meaning(*object), answer->size());
-    const auto value = od::decode(meaning.type, *answer);
-    if (value && meaning.type_known) return std::optional(od::decode_number(meaning.encoding, *value));
-    return std::optional(static_cast<double>(load_le(*answer)));
-  }
-
   /// What has to be set before the drive listens to CANopen.
   Result<void> look_at_needs() {
     for (const auto& need : units_->profile().rules.nmt.needs) {
-      const auto now = number(need.name);
+      const auto now = setting_of(*session_, *units_, need.name);
       if (!now) return fail(now.error());
       if (*now && **now != static_cast<double>(need.value))
         add(Weight::caution, need.name,
@@ -152,19 +177,19 @@ class Preflight {
 
   /// What cannot be read may hold.
   Result<void> look_at_cautions() {
-    for (const auto& caution : units_->profile().rules.cautions) {
-      std::string unread;
-      if (caution.is_conditional()) {
-        const auto now = number(caution.name);
-        if (!now) return fail(now.error());
-        if (*now && !caution.holds(**now)) continue;
-        if (!*now)
-          unread =
-              fmt::format(fmt::runtime(chinese_ ? report::chinese_word(kUnread) : kUnread), caution.name);
-      }
-      add(Weight::caution, "",
-          unread + (chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text));
+    const auto concerns = [this](const drive::Caution& rule) {
+      return !request_.purpose || rule.concerns_use(request_.purpose->exposure());
+    };
+    const auto held = held_cautions(*session_, *units_, request_.panel, concerns);
+    if (!held) return fail(held.error());
+    for (const auto& [rule, unread] : *held) {
+      const auto lead =
+          !unread ? std::string()
+                  : fmt::format(fmt::runtime(chinese_ ? report::chinese_word(kUnread) : kUnread), rule->name);
+      add(Weight::caution, "", lead + show::caution_text(units_->profile(), *rule, chinese_));
     }
+    for (const auto& [name, value] : request_.panel)
+      add(Weight::note, name, fmt::format("{} by --panel: servoctl cannot read it", value));
     return {};
   }
 
@@ -172,6 +197,7 @@ class Preflight {
   const MotionUnits* units_;
   std::uint8_t node_;
   bool chinese_;
+  PreflightRequest request_;
   std::vector<PreflightItem> items_;
 };
 
@@ -183,8 +209,8 @@ std::string_view name(PreflightItem::Weight weight) {
 }
 
 Result<std::vector<PreflightItem>> preflight(session::Session& session, const MotionUnits& units,
-                                             std::uint8_t node, bool chinese) {
-  return Preflight(session, units, node, chinese).run();
+                                             std::uint8_t node, bool chinese, PreflightRequest request) {
+  return Preflight(session, units, node, chinese, std::move(request)).run();
 }
 
 PreflightItem watchdog_item(const WatchdogPlan& watchdog) {
@@ -194,8 +220,8 @@ PreflightItem watchdog_item(const WatchdogPlan& watchdog) {
 Result<void> check_preflight(const std::vector<PreflightItem>& items, std::uint8_t node) {
   for (const auto& item : items)
     if (item.weight == Weight::stop)
-      return fail(
-          drive_error(Errc::refused, node, fmt::format("{}: {}", item.what, item.text), "nothing was moved"));
+      return fail(drive_error(Errc::refused, node, fmt::format("{}: {}", item.what, item.text),
+                              item.hint.empty() ? std::string("nothing was moved") : item.hint));
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "motion/held_cautions.hpp"
 #include "motion/motion_units.hpp"
 #include "motion/watchdog.hpp"
 
@@ -19,14 +20,22 @@ struct PreflightItem {
   Weight weight = Weight::note;
   std::string what;  ///< `state`, `watchdog`, `inputs`, …; empty for a caution of the family.
   std::string text;
+  std::string hint = {};  ///< Of one that stops: what to do.
 };
 std::string_view name(PreflightItem::Weight weight);  ///< `ok note caution stop`
+
+/// What a look before a motion is for, and what a person has told for it.
+struct PreflightRequest {
+  std::optional<Purpose> purpose = {};  ///< Cautions of other motions are left out; empty: none is.
+  PanelValues panel = {};
+  bool ignores_remote = false;  ///< Goes on although bit 9 of the statusword is 0.
+};
 
 /// What there is to know before the drive is energised: state, warnings, inputs, limits, the family's
 /// cautions whose condition holds. Only reads; what the drive does not have is left out.
 /// Errc::timeout when it does not answer.
 Result<std::vector<PreflightItem>> preflight(session::Session& session, const MotionUnits& units,
-                                             std::uint8_t node, bool chinese);
+                                             std::uint8_t node, bool chinese, PreflightRequest request = {});
 /// The watchdog's line of it.
 PreflightItem watchdog_item(const WatchdogPlan& watchdog);
 

@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "drive/quantity.hpp"
+#include "show/caution_text.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -69,7 +70,8 @@ report::Names chinese_names(const drive::Profile& profile) {
     put(fault.name, fault.name_zh, out);
     put(fault.check, fault.check_zh, out);
   }
-  for (const auto& caution : profile.rules.cautions) put(caution.text, caution.text_zh, out);
+  for (const auto& caution : profile.rules.cautions)
+    put(caution_text(profile, caution, false), caution_text(profile, caution, true), out);
   for (const auto& [code, abort] : profile.rules.abort_texts) put(abort.text, abort.text_zh, out);
   return out;
 }

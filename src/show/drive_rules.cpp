@@ -5,6 +5,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
+#include "show/caution_text.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::show {
@@ -217,20 +218,18 @@ Value fault(const Rules& rules) {
       {"panel", report::text_or_null(rules.emergency.panel), Show::everywhere, "EMCY names the panel's"}};
 }
 
-std::string text_of(const drive::Caution& caution, bool chinese) {
-  return chinese && !caution.text_zh.empty() ? caution.text_zh : caution.text;
-}
-
-Value cautions(const Rules& rules, bool chinese) {
+Value cautions(const drive::Profile& profile, bool chinese) {
   List out;
-  for (const auto& caution : rules.cautions) out.emplace_back(text_of(caution, chinese));
+  for (const auto& caution : profile.rules.cautions)
+    out.emplace_back(caution_text(profile, caution, chinese));
   return out;
 }
 
 /// As a paragraph: sentences in a row, a list would put commas between them.
-Value caution_text(const Rules& rules, bool chinese) {
+Value cautions_text(const drive::Profile& profile, bool chinese) {
   std::string out;
-  for (const auto& caution : rules.cautions) append(out, text_of(caution, chinese), " ");
+  for (const auto& caution : profile.rules.cautions)
+    append(out, caution_text(profile, caution, chinese), " ");
   return report::text_or_null(out);
 }
 
@@ -287,8 +286,8 @@ Record rules_record(const drive::Profile& profile, bool chinese) {
              {"store", store(profile), Show::everywhere, "storing"},
              {"motion", motion(rules)},
              {"fault", fault(rules), Show::everywhere, "faults and emergencies"},
-             {"cautions", caution_text(rules, chinese), Show::text, "before motion"},
-             {"cautions", cautions(rules, chinese), Show::json},
+             {"cautions", cautions_text(profile, chinese), Show::text, "before motion"},
+             {"cautions", cautions(profile, chinese), Show::json},
              {"assumed", text_list(rules.assumed), Show::everywhere, "not in the manual"},
              {"contradicted", report::text_or_null(od::to_text(rules.contradicted)), Show::text,
               "the manual is inconsistent on"},

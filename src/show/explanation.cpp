@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <optional>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/homing_method.hpp"
 #include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
 #include "report/catalogue.hpp"
+#include "show/caution_text.hpp"
 #include "show/explanation_parts.hpp"
 #include "show/lead_words.hpp"
 #include "show/object_records.hpp"
@@ -74,6 +78,25 @@ void add_objects(const TopicQuery& query, const drive::Profile& profile, bool ch
   }
 }
 
+/// What cautions of the family make of a motion goes behind the text of what they are about.
+void add_cautions(const drive::Profile& profile, const std::function<bool(const drive::Caution&)>& concerns,
+                  drive::Topic& topic) {
+  for (const auto& caution : profile.rules.cautions) {
+    if (!concerns(caution)) continue;
+    append(topic.text, caution_text(profile, caution, false), "\n\n");
+    append(topic.text_zh, caution_text(profile, caution, true), "\n\n");
+  }
+}
+
+/// Whether the drive may be set so that this method of 6098h finds no home.
+bool hinders(const drive::Profile& profile, const drive::Caution& caution, std::int64_t method) {
+  const auto& blocked = caution.methods;
+  if (std::find(blocked.begin(), blocked.end(), method) != blocked.end()) return true;
+  const auto switches = drive::switches_of(profile.rules.motion, method);
+  return std::any_of(switches.begin(), switches.end(),
+                     [&](auto input) { return caution.masks_input(input); });
+}
+
 void add_parameters(const TopicQuery& query, const drive::Profile& profile, bool by_name_only, bool chinese,
                     std::vector<Explanation>& out) {
   const auto* by_id = profile.parameter(query.whole());
@@ -88,6 +111,8 @@ void add_parameters(const TopicQuery& query, const drive::Profile& profile, bool
                       parameter.name_zh.empty() ? std::string() : parameter.id + " " + parameter.name_zh);
     topic.object = parameter.object;
     topic.line = source_of_line(parameter.line);
+    add_cautions(
+        profile, [&](const auto& caution) { return caution.name == parameter.id; }, topic);
     out.push_back({std::move(topic),
                    meant ? Found::parameter : Found::title,
                    {},
@@ -101,6 +126,11 @@ void add_topics(const TopicQuery& query, const Library& library, std::vector<Exp
         library.by_name_only ? query.match_name(topic) : query.match(topic, &library.profile->dictionary);
     if (!match) continue;
     out.push_back({topic, match->found, std::move(match->rows)});
+    if (topic.object != objects::kHomingMethod || !topic.value) continue;
+    const auto& profile = *library.profile;
+    add_cautions(
+        profile, [&](const auto& caution) { return hinders(profile, caution, *topic.value); },
+        out.back().topic);
   }
 }
 

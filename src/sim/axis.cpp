@@ -27,7 +27,9 @@ void Axis::reset(TimePoint now) {
   const auto faults = faults_;
   const auto track = track_;
   const auto own_counts = own_counts_;
+  const auto panel = panel_;
   *this = Axis(*profile_, *values_);
+  panel_ = panel;
   own_counts_ = own_counts;
   faults_ = faults;
   track_ = track;
@@ -58,6 +60,7 @@ bool Axis::is_halted() const { return profile_->rules.motion.halt && (controlwor
 
 void Axis::on_controlword(std::uint16_t controlword, bool enabled, TimePoint now) {
   advance(enabled, now);
+  look_at_switch_rules();
   const bool rising = (controlword & kNewSetpoint) != 0 && (controlword_ & kNewSetpoint) == 0;
   const bool low = (controlword & kNewSetpoint) == 0;
   controlword_ = controlword;
@@ -140,6 +143,7 @@ void Axis::advance(bool enabled, TimePoint now) {
     if (enabled) follow();
     if (kind() != Kind::homing) homing_.stop();
     if (!enabled || (is_steady() && !homing_.is_running())) {
+      if (kind() != Kind::torque && kind() != Kind::cyclic_torque) torque_ = 0;
       travel(std::chrono::duration<double>(now - time_).count());
       time_ = now;
       break;

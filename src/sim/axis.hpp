@@ -2,8 +2,12 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <map>
 #include <optional>
+#include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "base/time.hpp"
 #include "drive/profile.hpp"
@@ -30,6 +34,7 @@ class Axis {
   Axis(const drive::Profile& profile, ObjectValues& values)
       : profile_(&profile),
         values_(&values),
+        switch_rules_(find_switch_rules()),
         encoder_(find_encoder()),
         speed_monitor_(find_speed_monitor()) {}
 
@@ -59,6 +64,8 @@ class Axis {
     shown_.reset();
     return track_;
   }
+  /// Values of parameters that have no object and can be set on the panel only, by their name.
+  std::map<std::string, std::int64_t, std::less<>>& panel() { return panel_; }
 
  private:
   enum class Kind : std::uint8_t {
@@ -89,6 +96,9 @@ class Axis {
   bool is_steady() const;
   void step(double seconds);
   void approach(double wanted_velocity, double seconds);
+  void show_torque(double acceleration);
+  double rated_torque() const;
+  double most_torque() const;
   void step_position(double seconds);
   /// Where it follows a position at once, without set-points: the object; empty where it does not.
   std::optional<ObjectAddress> followed() const;
@@ -119,6 +129,14 @@ class Axis {
   double read(ObjectAddress object) const;
   /// Where the axis stands on its track.
   double place() const { return (position_ - origin_) / units_per_turn(); }
+  /// A caution that masks switches, and where its parameter stands; empty: on the panel only.
+  struct SwitchRule {
+    const drive::Caution* rule = nullptr;
+    std::optional<ObjectAddress> object;
+  };
+  std::vector<SwitchRule> find_switch_rules() const;
+  bool holds(const SwitchRule& rule) const;
+  void look_at_switch_rules();
   ObjectAddress find_encoder() const;
   std::optional<ObjectAddress> find_speed_monitor() const;
   double per_turn(drive::Measure measure) const;
@@ -137,6 +155,8 @@ class Axis {
 
   const drive::Profile* profile_;
   ObjectValues* values_;
+  std::vector<SwitchRule> switch_rules_;
+  std::map<std::string, std::int64_t, std::less<>> panel_;
   ObjectAddress encoder_;
   std::optional<ObjectAddress> speed_monitor_;  ///< Shows the speed of the motor in rpm.
   TimePoint time_{};
@@ -144,7 +164,7 @@ class Axis {
   double position_ = 0;
   double origin_ = 0;  ///< 6064h where the axis stood at power-on.
   double velocity_ = 0;
-  double torque_ = 0;
+  double torque_ = 0;  ///< In the unit of 6077h.
   std::optional<double> target_;
   std::deque<double> waiting_;
   bool acknowledged_ = false;  ///< Bit 12 in profile position.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "sim/axis.hpp"
@@ -11,6 +12,9 @@ namespace {
 
 /// Speed that full rated torque gives the unloaded motor in one second.
 constexpr double kTurnsPerSecondOfRatedTorque = 10;
+constexpr double kPercent = 100;
+/// Of the rated torque, for a short time.
+constexpr double kFactoryTorque = 3;
 /// The window of the following error where there is no 6065h, in turns.
 constexpr double kAssumedWindow = 3;
 constexpr double kNoWindow = 0xFFFF'FFFF;  ///< 6065h: not watched (CiA 402-2).
@@ -50,7 +54,7 @@ Axis::Range Axis::limits() const {
 
 bool Axis::is_at_limit() const {
   const auto [least, greatest] = limits();
-  const auto pressed = [&](Input input) { return track_.limits_stop && track_.is_pressed(input, place()); };
+  const auto pressed = [&](Input input) { return track_.stops(input) && track_.is_pressed(input, place()); };
   return position_ <= least || position_ >= greatest || pressed(Input::negative_limit) ||
          pressed(Input::positive_limit);
 }
@@ -59,7 +63,8 @@ bool Axis::is_at_limit() const {
 double Axis::allowed(double wanted) const {
   if (wanted == 0 || kind() == Kind::homing) return wanted;
   const int direction = wanted > 0 ? 1 : -1;
-  if (track_.limits_stop && track_.is_pressed(Track::limit(direction), place())) return 0;
+  if (const auto limit = Track::limit(direction); track_.stops(limit) && track_.is_pressed(limit, place()))
+    return 0;
   const auto [least, greatest] = limits();
   const double left = direction > 0 ? greatest - position_ : position_ - least;
   const double braking = left > 0 ? std::sqrt(2 * ramp() * left) : 0;
@@ -90,7 +95,8 @@ void Axis::watch_window() {
 bool Axis::is_steady() const {
   const auto wanted = [&] { return read(objects::kTargetVelocity) * speed_factor(objects::kTargetVelocity); };
   const auto [least, greatest] = limits();
-  const bool free = std::isinf(least) && std::isinf(greatest) && !track_.limits_stop;
+  const bool free = std::isinf(least) && std::isinf(greatest) && !track_.stops(Input::negative_limit) &&
+                    !track_.stops(Input::positive_limit);
   switch (kind()) {
     case Kind::velocity:
     case Kind::cyclic_velocity:
@@ -114,7 +120,7 @@ void Axis::step(double seconds) {
     case Kind::torque:
     case Kind::cyclic_torque: {
       torque_ = is_halted() ? 0 : read(objects::kTargetTorque);
-      velocity_ += torque_ / 100 * kTurnsPerSecondOfRatedTorque * units_per_turn() * seconds;
+      velocity_ += torque_ / rated_torque() * kTurnsPerSecondOfRatedTorque * units_per_turn() * seconds;
       velocity_ = allowed(std::clamp(velocity_, -fastest_by_torque(), fastest_by_torque()));
       break;
     }
@@ -131,7 +137,32 @@ void Axis::step(double seconds) {
 
 void Axis::approach(double wanted, double seconds) {
   const double most = ramp() * seconds;
-  velocity_ += std::clamp(allowed(wanted) - velocity_, -most, most);
+  const double change = std::clamp(allowed(wanted) - velocity_, -most, most);
+  velocity_ += change;
+  show_torque(change / seconds);
+}
+
+/// What the motor needs for an acceleration in units a second a second; one that cannot turn pushes with all
+/// it has.
+void Axis::show_torque(double acceleration) {
+  const double share = acceleration / units_per_turn() / kTurnsPerSecondOfRatedTorque;
+  const double most = most_torque();
+  torque_ =
+      std::clamp(faults_.stalled && velocity_ != 0 ? std::copysign(most, velocity_) : share * rated_torque(),
+                 -most, most);
+}
+
+/// In the unit of 6077h.
+double Axis::rated_torque() const {
+  const auto object = drive::place_of(*profile_, profile_->rules.motion.rated_torque);
+  const double rated = object ? read(*object) : 0;
+  return rated > 0 ? rated : kPercent;
+}
+
+double Axis::most_torque() const {
+  const double limit = read(objects::kMaxTorque);
+  const double factory = kFactoryTorque * rated_torque();
+  return limit > 0 ? std::min(limit, factory) : factory;
 }
 
 void Axis::step_position(double seconds) {

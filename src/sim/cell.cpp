@@ -39,7 +39,7 @@ Result<void> apply_option(const CellSpec& spec, const CellSpec::Option& option,
     return {};
   }
   if (option.key != "silent" && option.key != "delay") {
-    const std::string keys[] = {"state", "fault", "silent", "delay", "lie", "counts", "lss"};
+    const std::string keys[] = {"state", "fault", "silent", "delay", "lie", "counts", "panel", "lss"};
     return spec.wrong(
         fmt::format("'{}' is not an option of a simulated bus: use {}", option.key, one_of(keys)));
   }

@@ -9,6 +9,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/node_id.hpp"
+#include "drive/naming.hpp"
 #include "drive/shared_profile.hpp"
 
 namespace servoctl::sim {
@@ -87,6 +88,32 @@ Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<D
   return spec.wrong(fmt::format("'counts={}': all drives here report their counts per revolution", text));
 }
 
+/// `NAME=VALUE` of a parameter that has no object.
+std::optional<std::pair<std::string, std::int64_t>> panel_value(const drive::Profile& profile,
+                                                                std::string_view text) {
+  const auto equals = text.find('=');
+  if (equals == std::string_view::npos) return std::nullopt;
+  const auto number = parse_integer(text.substr(equals + 1));
+  const auto value = number ? number->as_signed() : std::nullopt;
+  const auto parameter = drive::resolve_parameter(profile, text.substr(0, equals));
+  if (!value || !parameter || (*parameter)->object) return std::nullopt;
+  return std::pair((*parameter)->id, *value);
+}
+
+/// What was set on the panel of these drives.
+Result<bool> set_on_panel(const CellSpec& spec, std::string_view text, std::span<DriveModel* const> drives) {
+  for (auto* drive : drives)
+    for (const auto one : split(text, ',')) {
+      const auto value = panel_value(drive->profile(), one);
+      if (!value)
+        return spec.wrong(fmt::format(
+            "'panel={}' is not NAME=VALUE of parameters that only the panel has: sim:sv2@1?panel=PA-20=0",
+            text));
+      drive->panel()[value->first] = value->second;
+    }
+  return true;
+}
+
 }  // namespace
 
 bool CellSpec::has(std::string_view key) const {
@@ -156,6 +183,7 @@ Result<bool> apply_drive_option(const CellSpec& spec, const CellSpec::Option& op
                                 std::span<DriveModel* const> drives, TimePoint now) {
   if (option.key == "fault") return plan_fault(spec, option.value, drives, now);
   if (option.key == "counts") return set_counts(spec, option.value, drives);
+  if (option.key == "panel") return set_on_panel(spec, option.value, drives);
   return false;
 }
 

@@ -57,8 +57,8 @@ Result<Duration> time_of(const CellSpec& spec, const CellSpec::Option& option);
 Result<std::vector<std::string_view>> lies_of(const CellSpec& spec, const CellSpec::Option& option,
                                               std::span<const std::string_view> known);
 
-/// Applies an option that is about the drives, whatever wire they hang on: `fault=CODE@TIME` and `counts=N`;
-/// false for any other. Times count from `now`.
+/// Applies an option that is about the drives, whatever wire they hang on: `fault=CODE@TIME`, `counts=N`,
+/// `panel=NAME=VALUE`; false for any other. Times count from `now`.
 Result<bool> apply_drive_option(const CellSpec& spec, const CellSpec::Option& option,
                                 std::span<DriveModel* const> drives, TimePoint now);
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -102,6 +103,8 @@ class DriveModel final : public canopen::ObjectStore {
   void set_torque_off(bool off) { power_.set_torque_off(off); }
   AxisFaults& axis_faults() { return axis_.faults(); }
   Track& track() { return axis_.track(); }
+  /// As Axis::panel().
+  std::map<std::string, std::int64_t, std::less<>>& panel() { return axis_.panel(); }
   /// As Axis::own_counts().
   double& own_counts() { return axis_.own_counts(); }
 

@@ -142,9 +142,10 @@ struct Way {
   Result<void> (*apply)(const Task&);  ///< Null: somebody else has applied it.
 };
 
-constexpr std::array<Way, 14> kWays{{{"state", nullptr},
+constexpr std::array<Way, 15> kWays{{{"state", nullptr},
                                      {"fault", nullptr},
                                      {"counts", nullptr},
+                                     {"panel", nullptr},
                                      {"sii", nullptr},
                                      {"delay", late_answers},
                                      {"silent", fall_silent},

@@ -13,7 +13,7 @@ Result<SiiFault> sii_fault_of(const CellSpec& spec);
 
 /// Applies an option of a ring to its cell, to all slaves or to the wire. Times count from `now`; positions
 /// from 1.
-///   fault=CODE@TIME, counts=N      as on CAN
+///   fault=CODE@TIME, counts=N, panel=NAME=VALUE  as on CAN
 ///   delay=TIME       answers of the mailboxes come this late
 ///   silent=TIME      from then on frames do not come back
 ///   lose=N           every Nth frame does not come back; what it asked for was done

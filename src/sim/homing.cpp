@@ -1,7 +1,5 @@
 #include "sim/homing.hpp"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace servoctl::sim {
@@ -13,51 +11,12 @@ constexpr Duration kLongest = std::chrono::seconds(50);
 constexpr Duration kFilterTime = std::chrono::milliseconds(10);
 /// Methods without motion take so long.
 constexpr Duration kSettleTime = std::chrono::milliseconds(300);
-/// Methods 17 to 30 are 1 to 14 without the index pulse.
-constexpr std::int64_t kWithoutIndex = 16;
-
-/// The pictures of CiA 402-2, homing methods: switch, first direction, edge, last direction. Where a picture
-/// shows two starting sides, the second start is on the switch, or right of it (left of it in 11 to 14) with
-/// a limit switch to turn round at.
-constexpr std::array<HomingMethod, 16> kMethods{{
-    {1, Input::negative_limit, -1, +1, +1},
-    {2, Input::positive_limit, +1, -1, -1},
-    {3, Input::home, +1, -1, -1},
-    {4, Input::home, +1, -1, +1},
-    {5, Input::home, -1, +1, +1},
-    {6, Input::home, -1, +1, -1},
-    {7, Input::home, +1, -1, -1, true},
-    {8, Input::home, +1, -1, +1, true},
-    {9, Input::home, +1, +1, -1, true},
-    {10, Input::home, +1, +1, +1, true},
-    {11, Input::home, -1, +1, +1, true},
-    {12, Input::home, -1, +1, -1, true},
-    {13, Input::home, -1, -1, +1, true},
-    {14, Input::home, -1, -1, -1, true},
-    {33, {}, 0, 0, -1},
-    {34, {}, 0, 0, +1},
-}};
-
-bool stays_put(std::int64_t number) { return number == 0 || number == 35 || number == 37; }
-
 }  // namespace
 
-std::optional<HomingMethod> homing_method(std::int64_t number) {
-  const bool without_index = number > kWithoutIndex && number <= kWithoutIndex + 14;
-  const auto like = without_index ? number - kWithoutIndex : number;
-  const auto found =
-      std::find_if(kMethods.begin(), kMethods.end(), [&](const auto& m) { return m.number == like; });
-  if (found == kMethods.end()) return std::nullopt;
-  auto method = *found;
-  method.number = static_cast<std::int8_t>(number);
-  method.index = !without_index;
-  return method;
-}
-
 void Homing::start(std::int64_t method, Speeds speeds, TimePoint begins) {
-  const auto known = homing_method(method);
-  phase_ = known || stays_put(method) ? Phase::waiting : Phase::failed;
-  method_ = known.value_or(HomingMethod{});
+  const auto known = drive::homing_method(method);
+  phase_ = known || drive::stays_put(method) ? Phase::waiting : Phase::failed;
+  method_ = known.value_or(drive::HomingMethod{});
   speeds_ = speeds;
   direction_ = 0;
   turned_ = false;
@@ -87,7 +46,7 @@ void Homing::go(Phase phase, int direction) {
 void Homing::begin(const Track& track, double place) {
   if (method_.number == 0) return go(Phase::settle, 0);
   if (!method_.input) return seek_pulse(track, place);
-  if (track.is_pressed(*method_.input, place)) return go(Phase::leave, method_.edge);
+  if (track.is_seen(*method_.input, place)) return go(Phase::leave, method_.edge);
   go(Phase::seek, method_.seek);
 }
 
@@ -102,7 +61,7 @@ void Homing::seek_pulse(const Track& track, double place) {
 /// A limit switch that is not the one it looks for stands in its way. While it brakes it is on its way back.
 bool Homing::meets_limit(const Track& track, double place) const {
   const auto limit = Track::limit(direction_);
-  return speed() != 0 && limit != method_.input && track.is_pressed(limit, place);
+  return speed() != 0 && limit != method_.input && track.is_seen(limit, place);
 }
 
 void Homing::turn_or_fail() {
@@ -117,7 +76,7 @@ std::optional<double> Homing::look(const Track& track, double place, bool stands
   if (phase_ == Phase::waiting) begin(track, place);
   if (now >= begins_ + kLongest) go(Phase::failed, 0);
   if (meets_limit(track, place)) turn_or_fail();
-  const bool pressed = method_.input && track.is_pressed(*method_.input, place);
+  const bool pressed = method_.input && track.is_seen(*method_.input, place);
   switch (phase_) {
     case Phase::settle: return now >= begins_ + kSettleTime ? find(place) : std::nullopt;
     case Phase::seek:

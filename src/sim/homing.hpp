@@ -4,24 +4,10 @@
 #include <optional>
 
 #include "base/time.hpp"
+#include "drive/homing_method.hpp"
 #include "sim/track.hpp"
 
 namespace servoctl::sim {
-
-/// How a method of 6098h finds home: it seeks a switch, leaves it over one of its edges, and takes that edge,
-/// or the next index pulse behind it. Directions are ±1.
-struct HomingMethod {
-  std::int8_t number = 0;
-  std::optional<Input> input;  ///< Whose edge it is; empty: none, the index pulse is all it looks for.
-  int seek = 0;                ///< Where it goes first while the switch is not pressed.
-  int edge = 0;                ///< -1: the left edge of the switch, +1: the right one.
-  int approach = 0;            ///< How it passes the edge in the end, and where it looks for the index pulse.
-  bool turns = false;          ///< It turns round where it meets a limit switch first.
-  bool index = true;           ///< False: home is the edge itself.
-};
-
-/// Methods 1 to 14, 17 to 30, 33 and 34 (CiA 402-2, homing methods); empty for all others.
-std::optional<HomingMethod> homing_method(std::int64_t number);
 
 /// The homing of a simulated drive, from its start to home or to an error: it says how fast the axis shall
 /// go, and looks at switches and index pulse as it goes. Places are in turns of the motor.
@@ -69,7 +55,7 @@ class Homing {
   std::optional<double> find(double place);
 
   Phase phase_ = Phase::idle;
-  HomingMethod method_;
+  drive::HomingMethod method_;
   Speeds speeds_;
   int direction_ = 0;
   bool turned_ = false;

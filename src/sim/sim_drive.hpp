@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -43,6 +44,7 @@ class SimDrive final : public Device {
   void set_torque_off(bool off) { model_.set_torque_off(off); }
   AxisFaults& axis_faults() { return model_.axis_faults(); }
   Track& track() { return model_.track(); }
+  std::map<std::string, std::int64_t, std::less<>>& panel() { return model_.panel(); }
   double& own_counts() { return model_.own_counts(); }
 
   const drive::Profile& profile() const { return model_.profile(); }

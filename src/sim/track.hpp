@@ -1,13 +1,15 @@
 #pragma once
 
-#include <cstdint>
+#include <array>
+#include <cstddef>
 #include <limits>
 #include <optional>
 
+#include "drive/rules.hpp"
+
 namespace servoctl::sim {
 
-/// Order of MotionRules::inputs.
-enum class Input : std::uint8_t { negative_limit, positive_limit, home };
+using drive::Input;
 
 /// A switch beside the track, pressed from one place to another.
 struct Switch {
@@ -29,6 +31,11 @@ struct Track {
   bool no_index = false;     ///< It never comes.
   double scatter = 0;        ///< The switches shift by up to so much from one homing to the next.
   double shift = 0;          ///< By how much they are shifted now.
+  /// The switches that a parameter of the drive makes it ignore, and those that one could
+  /// (drive::Caution::masks). A limit switch that a parameter has not masked stops every motion in its
+  /// direction.
+  std::array<bool, 3> masked{};
+  std::array<bool, 3> maskable{};
 
   const Switch& at(Input input) const {
     return input == Input::home ? home : input == Input::negative_limit ? negative_limit : positive_limit;
@@ -36,6 +43,15 @@ struct Track {
   bool is_pressed(Input input, double place) const {
     const auto& one = at(input);
     return one.stuck.value_or(place >= one.from + shift && place <= one.to + shift);
+  }
+  /// Whether the drive acts on the switch: it is pressed, and no parameter masks it.
+  bool is_seen(Input input, double place) const {
+    return !masked[static_cast<std::size_t>(input)] && is_pressed(input, place);
+  }
+  /// Whether this limit switch stops motions where it is pressed.
+  bool stops(Input limit) const {
+    const auto which = static_cast<std::size_t>(limit);
+    return !masked[which] && (limits_stop || maskable[which]);
   }
   /// The limit switch at the end this direction (±1) leads to.
   static constexpr Input limit(int direction) {

@@ -39,6 +39,8 @@ BUSES = {
     "lss scan": "sim:sv2@255,da200@255,gsd600@1?lss",
     "lss store -n 5": "sim:sv2@5?lss",
     "lss": "sim:sv2@3?lss",
+    "home 17": "sim:sv2@1?panel=PA-20=0,PA-74=1",
+    "test home 17": "sim:sv2@1?panel=PA-20=0,PA-74=1",
 }
 # Lines that are run before, on the same bus.
 BEFORE = {

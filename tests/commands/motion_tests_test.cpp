@@ -11,6 +11,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Its limit switches are masked from the factory, by parameters that only the panel shows.
+constexpr const char* kSwitchesObeyed = "sv2@1?panel=PA-20=0,PA-74=1";
+const std::pair<std::string, std::string> kPanel{"--panel", "PA-20=0,PA-74=1"};
+
 class MotionTests : public TestedDrive {
  protected:
   void TearDown() override {
@@ -110,8 +114,8 @@ TEST_F(MotionTests, JogEndsSafelyWhenInterrupted) {
 }
 
 TEST_F(MotionTests, HomePassesAndShowsEachRun) {
-  build("sv2@1", "sv2");
-  const auto result = run("test home", {{"--repeat", "3"}, {"--limit", "3000rpm"}});
+  build(kSwitchesObeyed, "sv2");
+  const auto result = run("test home", {{"--repeat", "3"}, {"--limit", "3000rpm"}, kPanel});
   ASSERT_TRUE(result.has_value()) << result.error().message << result.error().hint;
   EXPECT_EQ(criterion(result, "found"), "passed 3");
   EXPECT_EQ(criterion(result, "spread"), "passed 0");
@@ -119,9 +123,9 @@ TEST_F(MotionTests, HomePassesAndShowsEachRun) {
 }
 
 TEST_F(MotionTests, HomeFailsWhereItEndsSomewhereElseEachTime) {
-  build("sv2@1", "sv2");
+  build(kSwitchesObeyed, "sv2");
   distort({0x6064, 0}, [this](double value) { return value + seconds() * 1e5; });
-  const auto result = run("test home", {{"--repeat", "3"}, {"--limit", "3000rpm"}});
+  const auto result = run("test home", {{"--repeat", "3"}, {"--limit", "3000rpm"}, kPanel});
   EXPECT_TRUE(criterion(result, "spread").starts_with("failed"));
   EXPECT_TRUE(failed());
 }
@@ -155,18 +159,18 @@ TEST_F(MotionTests, HomeIsMeasuredAgainstTheEncoderOfThePanel) {
     ASSERT_TRUE(session->download(1, object, store_le(value, 4)));
   drive().track().scatter = 0.1;
   const auto home = [&](const std::string& counts) {
-    const Words words{{"method", "23"}, {"--repeat", "3"}, {"--turn", "131072"}, {"--encoder", counts}};
+    const Words words{{"method", "19"}, {"--repeat", "3"}, {"--turn", "131072"}, {"--encoder", counts}};
     return criterion(run("test home", words), "encoder_spread");
   };
   EXPECT_TRUE(home("10000").starts_with("failed 3")) << home("10000");
-  EXPECT_EQ(criterion(run("test home", {{"method", "23"}, {"--turn", "131072"}}), "encoder_spread"),
+  EXPECT_EQ(criterion(run("test home", {{"method", "19"}, {"--turn", "131072"}}), "encoder_spread"),
             "skipped null");
 }
 
 TEST_F(MotionTests, HomeStopsAtTheFirstThatFails) {
-  build("sv2@1", "sv2");
+  build(kSwitchesObeyed, "sv2");
   drive().track().negative_limit.stuck = true;
-  const auto result = run("test home", {{"--limit", "3000rpm"}});
+  const auto result = run("test home", {{"--limit", "3000rpm"}, kPanel});
   EXPECT_EQ(criterion(result, "found"), "failed 0");
   EXPECT_TRUE(criterion(result, "completed").starts_with("failed"));
 }

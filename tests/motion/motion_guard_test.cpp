@@ -148,6 +148,7 @@ TEST_F(MotionTrouble, AShortMoveIsDoneWhenTheMotorIsThereAndNotBefore) {
 }
 
 TEST_F(MotionTrouble, BothHomingSpeedsAreBoundByTheLimit) {
+  bench.obey_switches();
   auto home = home_by("1");
   home.slow = "3000rpm";
   const auto done = bench.home(home);
@@ -157,6 +158,7 @@ TEST_F(MotionTrouble, BothHomingSpeedsAreBoundByTheLimit) {
 }
 
 TEST_F(MotionTrouble, ANewZeroIsNoWay) {
+  bench.obey_switches();
   ASSERT_TRUE(bench.move(move_to("3rev", "250rpm")).outcome);
   bench.drive().track().negative_limit.to = 2;  // A turn from where it stands, so it stays in the window.
   bench.options.window = "2.5rev";

@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "drive/naming.hpp"
 #include "motion/motion_kinds.hpp"
 #include "sim/cell.hpp"
 #include "tests/session/troubled_bus.hpp"
@@ -147,6 +148,27 @@ class MotionBench {
   /// Lets time pass with nobody on the bus.
   void wait(Duration time) {
     (void)session->wait([] { return false; }, session->now() + time);
+  }
+
+  /// As an installer leaves it: the drive acts on its limit switches. It has restarted where that needs it.
+  void obey_switches() {
+    bool restarts = false;
+    for (const auto& rule : profile().rules.cautions) {
+      if (rule.masks.empty() || !rule.set) continue;
+      const auto place = drive::place_of(profile(), rule.name);
+      if (!place) {
+        drive().panel()[rule.name] = *rule.set;
+        options.panel[rule.name] = *rule.set;
+        continue;
+      }
+      const auto size = drive().value(*place).size();
+      EXPECT_TRUE(session->download(1, *place, store_le(static_cast<std::uint64_t>(*rule.set), size)));
+      restarts = true;
+    }
+    if (!restarts) return;
+    EXPECT_TRUE(bus->send(*can::parse_frame("000#8101")));
+    wait(std::chrono::milliseconds(500));
+    (void)session->take_events();
   }
 
   bool energised() { return drive::is_energised(drive().power_state()); }

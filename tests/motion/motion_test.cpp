@@ -87,6 +87,7 @@ TEST_P(MotionOfFamily, RelativeMoveCountsFromWhereTheMotorStands) {
 }
 
 TEST_P(MotionOfFamily, HomingEndsHomedAndIsNotTakenFromAnEarlierRun) {
+  bench.obey_switches();
   choose_a_method(bench);
   for (int i = 0; i < 2; ++i) {
     const auto done = bench.home(home_by(GetParam().method));
@@ -175,6 +176,7 @@ TEST_P(MotionOfFamily, CancelledWhileHomingLeavesNothingBehind) {
   for (int point = 1; point < 300; point += 29) {
     MotionBench own(GetParam().name, GetParam().turn);
     if (!own.profile().rules.motion.homing) return;
+    own.obey_switches();
     choose_a_method(own);
     int asked = 0;
     own.started = [&] { own.session->options().cancelled = [&] { return ++asked >= point; }; };

@@ -75,12 +75,14 @@ TEST_F(MotionTrouble, LeavingTheWindowStopsTheMotion) {
 }
 
 TEST_F(MotionTrouble, AMissingIndexPulseEndsHomingInItsTime) {
+  bench.obey_switches();
   bench.drive().track().no_index = true;
   const auto done = bench.home(home_by("1", 3s));
   expect_stopped(done, "no home found");
 }
 
 TEST_F(MotionTrouble, AStuckSwitchEndsHomingWithItsError) {
+  bench.obey_switches();
   bench.drive().track().negative_limit.stuck = true;
   expect_stopped(bench.home(home_by("1")), "with an error");
   // The error bit of that run does not end the next one before it begins.
@@ -90,6 +92,7 @@ TEST_F(MotionTrouble, AStuckSwitchEndsHomingWithItsError) {
 }
 
 TEST_F(MotionTrouble, HomedFromAnEarlierRunIsNotBelievedWhileTheDriveTakesItsTimeToBegin) {
+  bench.obey_switches();
   ASSERT_TRUE(bench.home(home_by("1")).outcome);
   bench.drive().axis_faults().late_start = 100ms;
   const auto done = bench.home(home_by("1"));
@@ -98,6 +101,7 @@ TEST_F(MotionTrouble, HomedFromAnEarlierRunIsNotBelievedWhileTheDriveTakesItsTim
 }
 
 TEST_F(MotionTrouble, ADriveThatNeverBeginsToLookForHomeIsGivenUp) {
+  bench.obey_switches();
   ASSERT_TRUE(bench.home(home_by("1")).outcome);
   bench.drive().axis_faults().late_start = 1h;
   expect_stopped(bench.home(home_by("1")), "from an earlier run");

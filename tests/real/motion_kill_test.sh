@@ -32,14 +32,15 @@ signals=(INT TERM HUP QUIT TSTP USR1 KILL INTINT)
 objects=(0x6060 0x60FF 0x1016:1)
 watched=true
 case $family in
-  gsd600) commands=("${commands[@]/%/ --turn 131072}") ;;
+  # Its limit switches are masked from the factory; the home switch is not.
+  gsd600) commands=("${commands[@]/home 1/home 3}") && commands=("${commands[@]/%/ --turn 131072}") ;;
   ts) commands=("${commands[@]/%/ --turn 10000}") ;;
   da200)
     commands=("${commands[@]/%/ --turn 10000}")
     watched=false
     ;;
   sv2)
-    commands=("${commands[@]/home 1/home 17}")
+    commands=("${commands[@]/home 1/home 35}")
     watched=false
     ;;
   dm) commands=("jog 60rpm --for 2s" "jog -20rpm --turns 1" "move 2rev --relative --speed 60rpm") ;;

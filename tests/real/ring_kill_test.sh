@@ -23,11 +23,11 @@ wait_for() { for _ in $(seq 200); do "$servoctl" status --json >/dev/null 2>&1 &
 state() { "$servoctl" status --json | jq -r '.result[0] | "\(.energised) \(.state) \(.al_state)"'; }
 held() { "$servoctl" read 0x6060 0x60FF 0x1C12:0 0x1C12:1 0x1C13:0 --json | jq -c '[.result[].value]'; }
 
-"$servoctl" sim sv2@1 --bus "$ring" >"$work/sim" 2>&1 &
+"$servoctl" sim "sv2@1?panel=PA-20=0,PA-74=1" --bus "$ring" >"$work/sim" 2>&1 &
 sim=$!
 wait_for || { cat "$work/sim"; echo "FAILED: the simulated drive does not answer"; exit 1; }
 
-commands=("jog 60rpm --for 2s" "jog -120rpm --turns 3" "move 2rev --relative --speed 120rpm" "home 17 --speed 60rpm --search 6rpm"
+commands=("jog 60rpm --for 2s" "jog -120rpm --turns 3" "move 2rev --relative --speed 120rpm" "home 17 --speed 60rpm --search 6rpm --panel PA-20=0,PA-74=1"
   "torque 2% --limit 60rpm --for 2s" "enable")
 signals=(INT TERM HUP QUIT TSTP USR1 KILL INTINT)
 before=$(held)

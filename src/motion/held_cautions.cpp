@@ -1,0 +1,123 @@
+#include "motion/held_cautions.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/text.hpp"
+#include "drive/homing_method.hpp"
+#include "drive/naming.hpp"
+#include "show/caution_text.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+std::string condition_text(const HeldCaution& held) {
+  const auto& rule = *held.rule;
+  if (rule.value) return fmt::format("{} = {}", rule.name, *rule.value);
+  if (rule.not_value) return fmt::format("{} is not {}", rule.name, *rule.not_value);
+  return "the family's data say so";
+}
+
+/// What to do about a refusal: change the parameter, on the bus or on the panel.
+std::string remedy(const HeldCaution& held, const MotionUnits& units) {
+  const auto& rule = *held.rule;
+  const auto ending = show::ending_setting(rule);
+  if (ending.empty()) return "use another method or motion";
+  const bool restart = show::needs_restart(units.profile(), rule);
+  if (!held.unread && units.object(rule.name))
+    return restart ? fmt::format("`param set {}={} -n {}` and restart the drive", rule.name, *rule.set,
+                                 units.node())
+                   : fmt::format("`param set {}={} -n {}` ends that", rule.name, *rule.set, units.node());
+  return restart ? fmt::format("set {} on the panel and restart the drive, then add --panel {}={}", ending,
+                               rule.name, *rule.set)
+                 : fmt::format("set {} on the panel, then add --panel {}={}", ending, rule.name, *rule.set);
+}
+
+Error refusal(const HeldCaution& held, const MotionUnits& units, const std::string& what) {
+  const auto because =
+      held.unread ? fmt::format("{} cannot be read, and may be so: {}", held.rule->name, condition_text(held))
+                  : condition_text(held);
+  return drive_error(Errc::refused, units.node(), fmt::format("{}: {}", what, because), remedy(held, units));
+}
+
+Result<void> check_method(const HeldCaution& held, const MotionUnits& units, std::int64_t method) {
+  const auto& rule = *held.rule;
+  if (std::find(rule.methods.begin(), rule.methods.end(), method) != rule.methods.end())
+    return fail(refusal(held, units, fmt::format("homing method {} is not possible", method)));
+  for (const auto input : drive::switches_of(units.profile().rules.motion, method))
+    if (rule.masks_input(input))
+      return fail(refusal(
+          held, units,
+          fmt::format("homing method {} needs {}, which the drive ignores", method, show::name(input))));
+  return {};
+}
+
+}  // namespace
+
+drive::Use Purpose::exposure() const {
+  const bool stays = use == drive::Use::home && method && drive::stays_put(*method);
+  return stays ? drive::Use::enable : use;
+}
+
+Result<std::optional<double>> setting_of(session::Session& session, const MotionUnits& units,
+                                         const std::string& name) {
+  const auto object = units.object(name);
+  if (!object) return std::optional<double>();
+  const auto answer = session.upload(units.node(), *object);
+  if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
+  if (!answer || answer->empty()) return std::optional<double>();
+  const auto meaning = drive::fitted(units.meaning(*object), answer->size());
+  const auto value = od::decode(meaning.type, *answer);
+  if (value && meaning.type_known) return std::optional(od::decode_number(meaning.encoding, *value));
+  return std::optional(static_cast<double>(load_le(*answer)));
+}
+
+Result<std::vector<HeldCaution>> held_cautions(session::Session& session, const MotionUnits& units,
+                                               const PanelValues& panel,
+                                               const std::function<bool(const drive::Caution&)>& concerns) {
+  std::vector<HeldCaution> out;
+  std::map<std::string, std::optional<double>> known;
+  for (const auto& rule : units.profile().rules.cautions) {
+    if (!concerns(rule)) continue;
+    if (!rule.is_conditional()) {
+      out.push_back({&rule, false});
+      continue;
+    }
+    if (known.count(rule.name) == 0) {
+      const auto read = setting_of(session, units, rule.name);
+      if (!read) return fail(read.error());
+      const auto told = panel.find(rule.name);
+      known[rule.name] = !*read && told != panel.end() ? static_cast<double>(told->second) : *read;
+    }
+    const auto& now = known[rule.name];
+    if (!now || rule.holds(*now)) out.push_back({&rule, !now});
+  }
+  return out;
+}
+
+Result<void> check_cautions(const std::vector<HeldCaution>& held, const MotionUnits& units,
+                            const Purpose& purpose) {
+  for (const auto& each : held) {
+    const auto& blocked = each.rule->blocks;
+    if (std::find(blocked.begin(), blocked.end(), purpose.use) != blocked.end())
+      return fail(refusal(each, units, "this motion is not possible"));
+    if (!purpose.method) continue;
+    if (const auto possible = check_method(each, units, *purpose.method); !possible) return possible;
+  }
+  return {};
+}
+
+Result<PanelValues> checked_panel(const drive::Profile& profile, const PanelValues& told) {
+  PanelValues out;
+  for (const auto& [name, value] : told) {
+    const auto parameter = drive::resolve_parameter(profile, name);
+    if (!parameter) return fail(parameter.error());
+    if ((*parameter)->object)
+      return fail(Errc::usage, fmt::format("--panel {}: servoctl reads this parameter from the drive", name),
+                  "leave it out");
+    out[(*parameter)->id] = value;
+  }
+  return out;
+}
+
+}  // namespace servoctl::motion

@@ -1,0 +1,93 @@
+#include "motion/other_axes.hpp"
+
+#include <fmt/format.h>
+
+#include "base/text.hpp"
+#include "drive/standard_objects.hpp"
+#include "motion/power.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+constexpr unsigned kMostAxes = 8;
+constexpr std::uint16_t kAxisStep = 0x0800;
+/// Low word of 1000h (CiA 402-2, device type).
+constexpr std::uint64_t kDriveProfile = 0x0192;
+constexpr Duration kStatePause = std::chrono::milliseconds(5);
+
+ObjectAddress of_axis(ObjectAddress object, unsigned number) {
+  return {static_cast<std::uint16_t>(object.index + (number - 1) * kAxisStep), object.sub};
+}
+
+bool is_asked(session::Session& session, std::uint8_t node) {
+  const auto type = session.upload(node, objects::kDeviceType);
+  return type && (load_le(*type) & 0xFFFF) == kDriveProfile;
+}
+
+std::optional<std::uint16_t> read_word(session::Session& session, std::uint8_t node, const OtherAxis& axis) {
+  const auto answer = session.upload(node, axis.statusword_object());
+  return answer ? std::optional(static_cast<std::uint16_t>(load_le(*answer))) : std::nullopt;
+}
+
+}  // namespace
+
+ObjectAddress OtherAxis::statusword_object() const { return of_axis(objects::kStatusword, number); }
+ObjectAddress OtherAxis::controlword_object() const { return of_axis(objects::kControlword, number); }
+
+bool OtherAxis::may_be_energised() const {
+  return !statusword || drive::is_energised(drive::decode_state(*statusword));
+}
+
+std::string OtherAxis::text() const {
+  const auto object = to_string(statusword_object());
+  return statusword ? fmt::format("axis {} ({}) is in {}", number, object,
+                                  drive::name(drive::decode_state(*statusword)))
+                    : fmt::format("axis {} ({}) does not tell its state", number, object);
+}
+
+std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profile* profile,
+                                  std::uint8_t node) {
+  std::vector<OtherAxis> out;
+  const bool is_known = profile != nullptr && !profile->is_generic();
+  for (unsigned number = 2; number <= kMostAxes; ++number) {
+    OtherAxis axis{number, {}};
+    if (is_known && profile->dictionary.find(axis.statusword_object()) == nullptr) break;
+    if (!is_known && number == 2 && !is_asked(session, node)) break;
+    axis.statusword = read_word(session, node, axis);
+    if (!is_known && !axis.statusword) break;
+    out.push_back(axis);
+  }
+  return out;
+}
+
+std::string axes_text(const std::vector<OtherAxis>& others) {
+  std::string states;
+  for (const auto& axis : others) append(states, axis.text(), "; ");
+  return fmt::format("the device has {} axes; this is about axis 1 ({}) only; {}", others.size() + 1,
+                     to_string(objects::kStatusword), states);
+}
+
+Result<void> stop_axes(session::Session& session, std::uint8_t node, std::vector<OtherAxis>& axes,
+                       bool disable) {
+  const auto say = [&](const OtherAxis& axis, std::uint16_t word) {
+    (void)session.download(node, axis.controlword_object(), store_le(word, 2));
+  };
+  for (const auto& axis : axes) say(axis, disable ? kSwitchOffWord : kQuickStopWord);
+  if (disable)
+    for (const auto& axis : axes) say(axis, kDisableVoltageWord);
+  Result<void> out;
+  for (auto& axis : axes) {
+    const auto end = session.now() + Power::kPatience;
+    do {
+      axis.statusword = read_word(session, node, axis);
+    } while (axis.may_be_energised() && session.now() < end && pause(session, kStatePause));
+    const bool stands = !disable && axis.statusword &&
+                        drive::decode_state(*axis.statusword) == drive::DriveState::quick_stop_active;
+    if (out && axis.may_be_energised() && !stands)
+      out = fail(drive_error(Errc::negative, node, fmt::format("{}: it may be energised", axis.text()),
+                             "switch off the supply"));
+  }
+  return out;
+}
+
+}  // namespace servoctl::motion
