@@ -40,8 +40,9 @@ TEST(TomlDepth, IsRefusedWithItsLine) {
 /// As toml++ reads them: the end of a string is found where it ends, and not later.
 TEST(TomlDepth, WhatFollowsAStringCounts) {
   const auto deep = repeated(100, "[");
-  for (const auto* before : {"a = [\"\", ", "a = ['', ", "a = [\"\"\"x\"\"\"\"\", ", "a = ['''x'''', ", "a = [\"\"\"\"\"\", ",
-                             "a = [\"\\\\\", ", "a = ['\\', ", "a = \"not ended\n", "# comment\na = ", "a = [\"\"\"\\\"\"\"\", "})
+  for (const auto* before :
+       {"a = [\"\", ", "a = ['', ", "a = [\"\"\"x\"\"\"\"\", ", "a = ['''x'''', ", "a = [\"\"\"\"\"\", ",
+        "a = [\"\\\\\", ", "a = ['\\', ", "a = \"not ended\n", "# comment\na = ", "a = [\"\"\"\\\"\"\"\", "})
     EXPECT_FALSE(is_flat(before + deep)) << before;
 }
 
