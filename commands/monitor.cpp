@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "base/number.hpp"
 #include "can/error_frame.hpp"
@@ -7,7 +9,10 @@
 #include "command/duration_option.hpp"
 #include "command/frame_filter.hpp"
 #include "session/can_network.hpp"
+#include "session/hearing.hpp"
 #include "session/open_bus.hpp"
+#include "session/pdo_setup.hpp"
+#include "session/process_values.hpp"
 #include "show/notice.hpp"
 #include "traffic/bus_load.hpp"
 #include "traffic/listening.hpp"
@@ -78,15 +83,15 @@ class Monitor {
         load_(bitrate, context.session->now()),
         begin_(context.session->now()) {}
 
+  /// The PDOs of the nodes were read; `lifetimes`, one of each, began before that.
+  void ask_again(std::vector<session::Lifetime> lifetimes) { lifetimes_ = std::move(lifetimes); }
+
   Result<void> run(std::optional<Duration> length) {
     traffic::Listener listener;
-    listener.on_frame = [this](const can::Frame& frame, TimePoint time) {
-      if (const auto error = can::parse_wire_error(frame)) errors_.add(*error);
-      load_.add(frame, time);
-      log_->add(time - begin_, context_->session->url(), frame);
-    };
+    listener.on_frame = [this](const can::Frame& frame, TimePoint time) { add(frame, time); };
     listener.on_pause = [this] {
       take_alarms();
+      renew_mappings();
       log_->flush();
       if (view_ != nullptr) view_->refresh(context_->session->now());
     };
@@ -122,13 +127,40 @@ class Monitor {
   }
 
  private:
+  void add(const can::Frame& frame, TimePoint time) {
+    if (const auto error = can::parse_wire_error(frame)) errors_.add(*error);
+    load_.add(frame, time);
+    log_->add(time - begin_, context_->session->url(), frame);
+  }
+
+  /// With --ask: of nodes that restarted, or were set up anew.
+  void renew_mappings() {
+    auto& session = *context_->session;
+    for (std::size_t i = 0; i < lifetimes_.size(); ++i) {
+      if (!lifetimes_[i].is_to_renew()) continue;
+      const std::uint8_t nodes[] = {context_->nodes[i]};
+      const session::Lifetime lifetime(session, nodes[0]);
+      // Frames that arrive meanwhile.
+      const session::Hearing hearing(session,
+                                     [this](const can::Frame& frame, TimePoint time) { add(frame, time); });
+      auto values = session::read_pdo_values(session, context_->profile, nodes);
+      if (!values.front()) continue;
+      lifetimes_[i] = lifetime;
+      log_->decoder().pdos().set(nodes[0], std::move(*values.front()));
+      traffic::tell_now(*context_, fmt::format("node {}: its PDO mapping was read again", nodes[0]));
+    }
+  }
+
   /// Everything else the session notices is among the frames.
   void take_alarms() {
     (void)context_->session->can()->take_reports();
     for (const auto& event : context_->session->take_events()) {
       const bool doubled = std::holds_alternative<NodeEvent::Doubled>(event.what);
       if (!doubled && !is_loss(event)) continue;
-      if (!doubled) ++lost_;
+      if (!doubled) {
+        ++lost_;
+        log_->decoder().pdos().forget(event.node);
+      }
       const auto text =
           fmt::format("ALARM {}", show::event_text(event, context_->profile, context_->chinese));
       log_->remark(event.time - begin_, "alarm", event.node, text, doubled ? "doubled" : "heartbeat-lost");
@@ -147,6 +179,7 @@ class Monitor {
 
   /// It is a part of what happened on the bus.
   void tell_bus(bool back, std::string_view line) {
+    for (std::uint8_t node = 1; back && node <= 127; ++node) log_->decoder().pdos().forget(node);
     log_->remark(context_->session->now() - begin_, "alarm", {}, fmt::format("ALARM {}", line),
                  back ? "bus-back" : "bus-lost");
     log_->flush();
@@ -160,6 +193,7 @@ class Monitor {
   TimePoint begin_;
   can::WireErrors errors_;
   std::size_t lost_ = 0;
+  std::vector<session::Lifetime> lifetimes_;  ///< With --ask, of the nodes of the command.
 };
 
 Result<Value> run_monitor(Context& context, const Arguments& arguments) {
@@ -171,11 +205,15 @@ Result<Value> run_monitor(Context& context, const Arguments& arguments) {
   if (!bitrate) return fail(bitrate.error());
   if (*bitrate == 0) bitrate = session::bitrate_of(context.session->url()).value_or(0);
   traffic::FrameLog log(context, std::move(*filter), arguments.has("--raw"));
+  std::vector<session::Lifetime> lifetimes;
+  if (arguments.has("--ask"))
+    for (const auto node : context.nodes) lifetimes.emplace_back(*context.session, node);
   if (arguments.has("--ask"))
     if (const auto asked = ask_mappings(context, log.decoder().pdos()); !asked) return fail(asked.error());
   auto view = arguments.has("--table") ? context.open_view(traffic::FrameTable::layout()) : nullptr;
   if (view) log.show_in(*view);
   Monitor monitor(context, log, *bitrate, view.get());
+  monitor.ask_again(std::move(lifetimes));
   const auto ended = monitor.run(*length);
   view.reset();
   if (!traffic::has_summary(ended, context.errors)) return fail(ended.error());

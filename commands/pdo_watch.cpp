@@ -8,6 +8,8 @@
 #include "command/duration_option.hpp"
 #include "pdo/pdo_use.hpp"
 #include "session/ethercat_network.hpp"
+#include "session/hearing.hpp"
+#include "session/process_values.hpp"
 #include "show/live_pdo.hpp"
 #include "show/sample_writer.hpp"
 #include "traffic/image_pdos.hpp"
@@ -63,6 +65,68 @@ Result<std::vector<Watched>> watched_pdos(Context& context, const Arguments& arg
     if (const auto added = add_pdos(context, arguments, node, out); !added) return fail(added.error());
   return out;
 }
+
+/// The PDOs of the nodes on CAN, for as long as the command runs. Once those of a node no longer hold as they
+/// were read, its frames are shown without values until they were read again.
+class Mappings {
+ public:
+  /// `all`: those that are in use are watched, not those that were named. To be made before they are read.
+  Mappings(Context& context, bool all) : context_(&context), all_(all) {
+    if (context.session->can() == nullptr) return;
+    for (const auto node : context.nodes) mappings_.push_back({node, {*context.session, node}});
+  }
+
+  /// To be called before a frame is shown.
+  void check(std::span<Watched> watched) {
+    for (auto& mapping : mappings_) {
+      const auto why = mapping.ended ? std::string() : mapping.lifetime.ended();
+      if (why.empty()) continue;
+      mapping.ended = true;
+      for (auto& entry : watched)
+        if (entry.view.node == mapping.node) entry.view.fields.clear();
+      traffic::tell_now(
+          *context_,
+          fmt::format(
+              "node {} {}: its PDOs are shown without values until its PDO mapping has been read again",
+              mapping.node, why));
+    }
+  }
+
+  /// To be called while nothing arrives.
+  void renew(std::vector<Watched>& watched) {
+    for (auto& mapping : mappings_) {
+      if (!mapping.lifetime.is_to_renew()) continue;
+      const session::Lifetime lifetime(*context_->session, mapping.node);
+      auto views = pdo::read_views(*context_, mapping.node);
+      if (!views) continue;
+      mapping.lifetime = lifetime;
+      mapping.ended = false;
+      for (auto& view : *views) take(std::move(view), watched);
+      traffic::tell_now(*context_, fmt::format("node {}: its PDO mapping was read again", mapping.node));
+    }
+  }
+
+ private:
+  struct Mapping {
+    std::uint8_t node;
+    session::Lifetime lifetime;
+    bool ended = false;  ///< And that was told.
+  };
+
+  void take(show::PdoView view, std::vector<Watched>& watched) const {
+    const auto known = std::find_if(watched.begin(), watched.end(), [&](const Watched& entry) {
+      return entry.view.node == view.node && entry.view.name == view.name;
+    });
+    if (known != watched.end())
+      known->view = std::move(view);
+    else if (all_ && view.pdo.is_valid())
+      watched.push_back({std::move(view)});
+  }
+
+  Context* context_;
+  bool all_;
+  std::vector<Mapping> mappings_;
+};
 
 report::Table summary(std::span<const Watched> watched) {
   report::Table table;
@@ -138,27 +202,32 @@ void tell_ended(Context& context, std::span<const Watched> watched) {
 }
 
 /// Shows what comes until it is ended; of each PDO it keeps how often it came.
-Result<void> listen(Context& context, show::SampleWriter& writer, std::span<Watched> watched,
-                    const std::optional<Duration>& length) {
+Result<void> listen(Context& context, show::SampleWriter& writer, std::vector<Watched>& watched,
+                    const std::optional<Duration>& length, Mappings& mappings) {
   auto& session = *context.session;
   const auto begin = session.now();
+  const auto end = length ? begin + *length : kNever;
   const auto live = context.open_view(show::pdo_layout());
   writer.show_in(live.get());
   traffic::Listener listener;
   listener.is_over = [&] { return live && live->is_over(); };
   listener.on_bus = session::BusReturn::to_people(session);
   listener.on_pause = [&] {
+    mappings.check(watched);
+    mappings.renew(watched);
     writer.flush();
     if (live) live->refresh(session.now());
   };
-  listener.on_frame = [&](const can::Frame& frame, TimePoint time) {
-    if (frame.remote || frame.error) return;
+  // Also while a mapping is read again.
+  const session::Hearing hearing(session, [&](const can::Frame& frame, TimePoint time) {
+    if (frame.remote || frame.error || time >= end) return;
+    mappings.check(watched);
     for (auto& entry : watched) {
-      if (entry.view.can_id() != canopen::can_id_of(frame)) continue;
+      if (!entry.view.pdo.is_valid() || entry.view.can_id() != canopen::can_id_of(frame)) continue;
       entry.rhythm.add(time);
       show(context, writer, entry, frame.payload(), time - begin);
     }
-  };
+  });
   for (auto& entry : watched) entry.last = begin;
   if (session.ethercat() != nullptr) listener.on_step = [&] { take_cycles(context, writer, watched, begin); };
   auto ended = traffic::listen(session, length, listener);
@@ -173,13 +242,14 @@ Result<Value> run_pdo_watch(Context& context, const Arguments& arguments) {
     return fail(Errc::usage,
                 fmt::format("'pdo watch' needs CAN or EtherCAT, {} is neither", context.session->url()),
                 "`watch` reads objects there, again and again");
+  Mappings mappings(context, !arguments.has("pdo"));
   auto watched = watched_pdos(context, arguments);
   if (!watched) return fail(watched.error());
   if (watched->empty())
     return fail(Errc::negative, "none of the PDOs is in use",
                 "`pdo show` lists them; `pdo enable` enables one");
   show::SampleWriter writer(context);
-  const auto ended = listen(context, writer, *watched, *length);
+  const auto ended = listen(context, writer, *watched, *length, mappings);
   if (!traffic::has_summary(ended, context.errors)) return fail(ended.error());
   if (context.session->ethercat() != nullptr)
     tell_ended(context, *watched);

@@ -176,7 +176,7 @@ Wake SocketCanBus::wait_for_frames(TimePoint deadline) {
 /// the bus. It takes the place of the old one, on which others may poll.
 Result<void> SocketCanBus::recover(TimePoint deadline) {
   for (;;) {
-    auto opened = socketcan_socket(interface_name_, filters_);
+    auto opened = socketcan_socket(interface_name_);
     if (opened) {
       waits_in_slices_ = wait_in_slices(opened->get());
       if (::dup3(opened->get(), socket_.get(), O_CLOEXEC) < 0)
@@ -192,6 +192,15 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
   }
 }
 
+std::vector<std::string> SocketCanBus::take_notices() {
+  const auto count = std::exchange(fd_frames_, 0);
+  if (count == 0) return {};
+  return {count == 1 ? fmt::format("{}: 1 CAN FD frame came; servoctl reads frames of classical CAN only",
+                                   interface_name_)
+                     : fmt::format("{}: {} CAN FD frames came; servoctl reads frames of classical CAN only",
+                                   interface_name_, count)};
+}
+
 /// Whoever is slower than the bus finds its frames here: the kernel drops what its queue has no room for.
 void SocketCanBus::drain(Take take) {
   given_ = 0;
@@ -204,7 +213,11 @@ void SocketCanBus::drain(Take take) {
 
 /// Takes what is there into the inbox, as many frames as one call gives.
 Result<void> SocketCanBus::fill(Take which) {
-  std::array<can_frame, kBatch> raw;
+  union Raw {
+    can_frame classical;
+    canfd_frame fd;
+  };
+  std::array<Raw, kBatch> raw;
   std::array<iovec, kBatch> parts;
   std::array<mmsghdr, kBatch> messages;
   struct Control {
@@ -230,9 +243,10 @@ Result<void> SocketCanBus::fill(Take which) {
   const StampClock clock;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const auto& head = messages[i].msg_hdr;
+    fd_frames_ += messages[i].msg_len == sizeof(canfd_frame);
     // How many frames the kernel has dropped so far, where it says so.
     if (messages[i].msg_len == sizeof(can_frame))
-      take(raw[i], told<std::uint32_t>(head, SO_RXQ_OVFL), clock.time(head));
+      take(raw[i].classical, told<std::uint32_t>(head, SO_RXQ_OVFL), clock.time(head));
   }
   return {};
 }

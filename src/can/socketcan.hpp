@@ -1,11 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,34 +20,26 @@ struct can_frame;  // linux/can.h
 
 namespace servoctl::can {
 
-/// Lets a frame with an 11-bit identifier pass when `(identifier & mask) == (id & mask)`.
-struct Filter {
-  std::uint32_t id = 0;
-  std::uint32_t mask = 0x7FF;
-};
-
 /// How long send() tries while the transmit queue is full.
 inline constexpr Duration kSendLimit = std::chrono::seconds(1);
 
-/// Opens a CAN interface of the kernel, such as `can0`. Received are data and remote frames with an 11-bit
-/// identifier (those that pass one of the filters, if there are any; CAN_RAW_FILTER_MAX = 512 at most, more
-/// are as none), also those that other programs of this machine send, and reports of the controller: bus-off,
-/// restart, error state, transmit time-out. Frames that were lost because receive() came too late are
+/// Opens a CAN interface of the kernel, such as `can0`. Received are data and remote frames, also those that
+/// other programs of this machine send, and reports of the controller: bus-off, restart, error state,
+/// transmit time-out. CAN FD frames are counted. Frames that were lost because receive() came too late are
 /// reported as an overflow of the controller (class 004h, data[1] = 01h). Errc::usage when the name cannot be
 /// that of an interface; Errc::bus when the interface is missing, down or no CAN interface, or when the
 /// kernel has no CAN.
-Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
-                                            std::span<const Filter> filters = {});
+Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name);
 
 /// The socket of open_socketcan(); errors as there.
-Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Filter> filters);
+Result<Descriptor> socketcan_socket(const std::string& name);
 
 /// Whether a controller takes part in its bus: one that is bus-off has no carrier, and what is sent then is
 /// dropped without an error. Empty where it is not known, as for an interface that is down.
 std::optional<bool> socketcan_carrier(const std::string& name);
 
-/// The same for one who only listens: frames with 11-bit and 29-bit identifiers, what this machine sends as
-/// well, and every report of the controller, the errors on the wire among them where its driver tells them.
+/// The same for one who only listens: with every report of the controller, the errors on the wire among them
+/// where its driver tells them.
 Result<std::unique_ptr<Bus>> open_socketcan_listener(const std::string& name);
 
 /// Whether this is the name of a CAN interface of this machine, up or down.
@@ -56,14 +48,12 @@ bool is_can_interface(const std::string& name);
 /// The CAN interfaces of this machine, up or down, in alphabetical order.
 std::vector<std::string> can_interfaces();
 
-/// A bus on a socket that carries `struct can_frame`, one a datagram: CAN_RAW, or one end of a socketpair in
-/// tests.
+/// A bus on a socket that carries `struct can_frame` and `struct canfd_frame`, one a datagram: CAN_RAW, or
+/// one end of a socketpair in tests.
 class SocketCanBus final : public Bus {
  public:
   /// `interface_name` is used in messages. The socket is made a blocking one whose recv() ends after a while.
   SocketCanBus(Descriptor socket, std::string interface_name, Duration send_limit = kSendLimit);
-  /// Filters that the socket has, for one that is opened in its place.
-  void keep_filters(std::span<const Filter> filters) { filters_.assign(filters.begin(), filters.end()); }
 
   TimePoint now() const override { return steady_now(); }
   /// Errc::bug for a frame that is not one of ISO 11898-1: a report of the controller, or an identifier or a
@@ -75,6 +65,8 @@ class SocketCanBus final : public Bus {
   TimePoint arrived() const override { return arrived_; }
   void gather(Duration delay) override { delay_ = delay; }
   int poll_fd() const override { return socket_.get(); }
+  /// How many CAN FD frames came: receive() does not give them, CANopen has none.
+  std::vector<std::string> take_notices() override;
   TimePoint next_event() const override { return inbox_.empty() ? kNever : TimePoint::min(); }
 
  private:
@@ -91,7 +83,7 @@ class SocketCanBus final : public Bus {
   Descriptor socket_;
   std::string interface_name_;
   Duration send_limit_;
-  std::vector<Filter> filters_;
+  std::size_t fd_frames_ = 0;      ///< Not told yet.
   std::uint32_t lost_frames_ = 0;  ///< As last told by the kernel.
   bool waits_in_slices_ = false;   ///< recv() of the socket ends after a slice.
   bool is_bus_off_ = false;        ///< As last reported, until it takes part again.

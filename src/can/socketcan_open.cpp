@@ -53,18 +53,7 @@ bool set_option(int fd, int level, int option, const T& value) {
   return ::setsockopt(fd, level, option, &value, sizeof value) == 0;
 }
 
-/// Frames with a 29-bit identifier never pass: CANopen has none, and they would match an 11-bit mask.
-bool set_filters(int fd, std::span<const Filter> filters) {
-  std::vector<can_filter> raw;
-  if (filters.size() <= CAN_RAW_FILTER_MAX)
-    for (const auto& filter : filters)
-      raw.push_back({filter.id & CAN_SFF_MASK, (filter.mask & CAN_SFF_MASK) | CAN_EFF_FLAG});
-  if (raw.empty()) raw.push_back({0, CAN_EFF_FLAG});
-  const auto size = static_cast<socklen_t>(raw.size() * sizeof raw.front());
-  return ::setsockopt(fd, SOL_CAN_RAW, CAN_RAW_FILTER, raw.data(), size) == 0;
-}
-
-bool configure(int fd, std::span<const Filter> filters) {
+bool configure(int fd) {
   // Of what is wrong on the wire, too, as far as the driver tells it: silence has a reason then.
   constexpr can_err_mask_t kReports = CAN_ERR_TX_TIMEOUT | CAN_ERR_CRTL | CAN_ERR_BUSOFF | CAN_ERR_RESTARTED |
                                       CAN_ERR_PROT | CAN_ERR_ACK | CAN_ERR_TRX | CAN_ERR_BUSERROR;
@@ -74,7 +63,9 @@ bool configure(int fd, std::span<const Filter> filters) {
     set_option(fd, SOL_SOCKET, SO_RCVBUF, kReceiveBytes);
   set_option(fd, SOL_SOCKET, SO_RXQ_OVFL, 1);
   set_option(fd, SOL_SOCKET, SO_TIMESTAMPNS, 1);
-  return set_option(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kReports) && set_filters(fd, filters);
+  // Counted only; a kernel without CAN FD lets none through.
+  set_option(fd, SOL_CAN_RAW, CAN_RAW_FD_FRAMES, 1);
+  return set_option(fd, SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kReports);
 }
 
 }  // namespace
@@ -84,7 +75,7 @@ std::optional<bool> socketcan_carrier(const std::string& name) {
   return carrier ? std::optional(*carrier != 0) : std::nullopt;
 }
 
-Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Filter> filters) {
+Result<Descriptor> socketcan_socket(const std::string& name) {
   if (name.empty() || name.size() >= IFNAMSIZ || name.find('/') != std::string::npos)
     return interface_no_name(name);
   Descriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
@@ -97,7 +88,7 @@ Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Fil
   if (!socket) return interface_cannot_open(name, errno);
   const auto index = interface_index(socket.get(), name);
   if (!index) return fail(index.error());
-  if (!configure(socket.get(), filters)) return interface_cannot_open(name, errno);
+  if (!configure(socket.get())) return interface_cannot_open(name, errno);
   sockaddr_can address{};
   address.can_family = AF_CAN;
   address.can_ifindex = *index;
@@ -107,23 +98,18 @@ Result<Descriptor> socketcan_socket(const std::string& name, std::span<const Fil
   return socket;
 }
 
-Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name,
-                                            std::span<const Filter> filters) {
+Result<std::unique_ptr<Bus>> open_socketcan(std::string_view interface_name) {
   const std::string name(interface_name);
-  auto socket = socketcan_socket(name, filters);
+  auto socket = socketcan_socket(name);
   if (!socket) return fail(socket.error());
-  auto bus = std::make_unique<SocketCanBus>(std::move(*socket), name);
-  bus->keep_filters(filters);
-  return bus;
+  return std::make_unique<SocketCanBus>(std::move(*socket), name);
 }
 
 Result<std::unique_ptr<Bus>> open_socketcan_listener(const std::string& name) {
-  auto socket = socketcan_socket(name, {});
+  auto socket = socketcan_socket(name);
   if (!socket) return fail(socket.error());
   constexpr can_err_mask_t kAll = CAN_ERR_MASK;
-  const can_filter both{0, 0};
-  if (!set_option(socket->get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kAll) ||
-      !set_option(socket->get(), SOL_CAN_RAW, CAN_RAW_FILTER, both))
+  if (!set_option(socket->get(), SOL_CAN_RAW, CAN_RAW_ERR_FILTER, kAll))
     return interface_cannot_open(name, errno);
   return std::make_unique<SocketCanBus>(std::move(*socket), name);
 }

@@ -55,6 +55,7 @@ void NodeGuard::on_time(TimePoint now) {
     const auto id = static_cast<std::uint8_t>(&node - nodes_.data());
     if (now >= lost_at(node)) {
       node.lost = true;
+      ++losses_[id];
       node.toggle.reset();
       events_.push_back({now, id, NodeEvent::GuardingLost{now - *node.asked, node.wrong_toggle}});
     }

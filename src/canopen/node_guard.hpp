@@ -29,6 +29,10 @@ class NodeGuard {
   void start(std::uint8_t node, GuardOptions options, TimePoint now);
   void stop(std::uint8_t node);
   bool guards(std::uint8_t node) const { return nodes_[node].active; }
+  /// It is guarded, and was lost.
+  bool is_lost(std::uint8_t node) const { return nodes_[node].lost; }
+  /// How often it was lost so far.
+  std::uint32_t losses(std::uint8_t node) const { return losses_[node]; }
 
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);
@@ -51,6 +55,7 @@ class NodeGuard {
   void update_deadline();
 
   std::array<Node, 128> nodes_{};
+  std::array<std::uint32_t, 128> losses_{};
   TimePoint deadline_ = kNever;  ///< Of all nodes.
   std::deque<can::Frame> tx_;
   std::deque<NodeEvent> events_;

@@ -41,7 +41,8 @@ void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
     on_error_control(*message, now);
     update_deadline();
   }
-  on_sent(frame);  // By another master.
+  if (const auto order = parse_nmt(frame)) on_command(order->node);  // By another master, as what follows.
+  on_sent(frame);
 }
 
 void NodeWatch::on_sent(const can::Frame& frame) {
@@ -75,6 +76,7 @@ void NodeWatch::on_emergency(const Emergency& emergency, TimePoint now) {
 
 void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
   auto& node = nodes_[message.node];
+  node.doubted = false;
   if (message.boot_up) {
     ++node.boots;
     emergency_ids_.on_boot_up(message.node);
@@ -106,6 +108,8 @@ void NodeWatch::on_time(TimePoint now) {
   for (auto& node : nodes_) {
     if (now < node.deadline()) continue;
     node.lost = true;
+    node.doubted = true;
+    ++node.losses;
     const auto id = static_cast<std::uint8_t>(&node - nodes_.data());
     events_.push_back({now, id, NodeEvent::HeartbeatLost{now - *node.last}});
     node.last.reset();
@@ -120,8 +124,10 @@ void NodeWatch::update_deadline() {
 }
 
 void NodeWatch::on_gap(TimePoint now) {
-  for (auto& node : nodes_)
+  for (auto& node : nodes_) {
+    node.doubted = true;
     if (node.last) node.last = now;
+  }
   update_deadline();
 }
 
@@ -147,6 +153,7 @@ void NodeWatch::forget(std::uint8_t node) {
   nodes_[node] = {};
   emergencies_.erase(node);
   nodes_[node].boots = before.boots;
+  nodes_[node].losses = before.losses;
   nodes_[node].guarded = before.guarded;
   update_deadline();
 }

@@ -59,12 +59,17 @@ class NodeWatch {
 
   std::optional<NodeEvent> take_event();
 
-  /// State last heard from the node (1..127); empty until it was heard.
-  std::optional<NmtState> state(std::uint8_t node) const { return nodes_[node].state; }
+  /// State last heard from the node (1..127); empty until it was heard, and again after its heartbeat or the
+  /// bus was lost, or a master commanded another one.
+  std::optional<NmtState> state(std::uint8_t node) const {
+    return nodes_[node].doubted ? std::nullopt : nodes_[node].state;
+  }
   /// Boot-up messages heard from the node so far.
   std::uint32_t boots(std::uint8_t node) const { return nodes_[node].boots; }
   /// Heartbeats heard from the node so far, boot-up not counted.
   std::uint32_t heartbeats(std::uint8_t node) const { return nodes_[node].heartbeats; }
+  /// How often its heartbeat was lost.
+  std::uint32_t losses(std::uint8_t node) const { return nodes_[node].losses; }
   /// The longest interval seen between two heartbeats; zero until two were.
   Duration period(std::uint8_t node) const { return nodes_[node].period; }
   /// The last emergencies of the node since its boot-up or error reset, oldest first, at most eight.
@@ -87,8 +92,10 @@ class NodeWatch {
  private:
   struct Node {
     std::optional<NmtState> state;
+    bool doubted = false;  ///< It was heard before the heartbeat or the bus was lost.
     std::uint32_t boots = 0;
     std::uint32_t heartbeats = 0;
+    std::uint32_t losses = 0;
     std::optional<TimePoint> last;  ///< Last heartbeat since boot-up or loss.
     Duration period{};              ///< Longest interval between two heartbeats.
     std::uint32_t intervals = 0;    ///< Intervals measured.

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "base/bytes.hpp"
+#include "canopen/cob_id.hpp"
 
 namespace servoctl::canopen {
 
@@ -29,6 +30,16 @@ ObjectAddress sdo_object(const can::Frame& frame) {
 
 std::uint32_t sdo_data(const can::Frame& frame) {
   return static_cast<std::uint32_t>(load_le(std::span(frame.data).subspan(4)));
+}
+
+std::optional<SdoWriteRequest> sdo_write_request(const can::Frame& frame) {
+  if (frame.extended || frame.remote || frame.error || frame.size != 8 || frame.id <= kSdoRequest ||
+      frame.id > kSdoRequest + kLastNode)
+    return std::nullopt;
+  const auto command = frame.data[0] >> 5U;
+  const bool begins_block = command == 6 && (frame.data[0] & 1U) == 0;
+  if (command != 1 && !begins_block) return std::nullopt;
+  return SdoWriteRequest{static_cast<std::uint8_t>(frame.id - kSdoRequest), sdo_object(frame)};
 }
 
 }  // namespace servoctl::canopen

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "base/object_address.hpp"
 #include "can/frame.hpp"
@@ -18,6 +19,13 @@ can::Frame sdo_segment(std::uint32_t cob_id, std::uint8_t command);
 
 ObjectAddress sdo_object(const can::Frame& frame);
 std::uint32_t sdo_data(const can::Frame& frame);
+
+/// The first frame of a write over the default SDO channel of a node (CiA 301, 7.2.4.3.3 and 7.2.4.3.9).
+struct SdoWriteRequest {
+  std::uint8_t node = 0;
+  ObjectAddress object;
+};
+std::optional<SdoWriteRequest> sdo_write_request(const can::Frame& frame);
 
 /// More than any object of a drive holds; ends a server that never sends its last segment.
 inline constexpr std::size_t kMaxSdoUpload = std::size_t{64} << 20U;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/signal_wait.hpp"
+#include "base/timespec.hpp"
 #include "cli/bus_holder.hpp"
 
 namespace servoctl::cli {
@@ -20,7 +21,7 @@ Duration BusHolder::serve() {
     // What goes wrong is told to the next line.
     (void)session->listen();
     if (const auto next = session->next_event(); next != kNever)
-      out = std::min(out, std::max(Duration::zero(), next - session->now()));
+      out = std::min(out, left_between(session->now(), next));
   }
   return out;
 }
@@ -30,7 +31,7 @@ Duration BusHolder::keep_up() {
   for (auto* session : sessions()) {
     if (!session->options().beside) return Duration::max();
     if (const auto next = session->network().keep_up(); next != kNever)
-      out = std::min(out, std::max(Duration::zero(), next - session->now()));
+      out = std::min(out, left_between(session->now(), next));
   }
   return out;
 }
@@ -43,7 +44,7 @@ Duration BusHolder::serve_beside() {
     if (session == session_ || !(session->network().must_go_on() || produces_sync(*session))) continue;
     (void)session->listen();
     if (const auto next = session->next_event(); next != kNever)
-      out = std::min(out, std::max(Duration::zero(), next - session->now()));
+      out = std::min(out, left_between(session->now(), next));
   }
   serving_beside_ = false;
   return out;
@@ -55,7 +56,7 @@ bool BusHolder::wait_for(pollfd& wanted, Duration longest, const std::function<v
   for (auto* session : sessions()) {
     fds.push_back({session->network().poll_fd(), POLLIN, 0});
     if (const auto next = session->next_event(); next != kNever)
-      left = std::clamp<Duration>(next - session->now(), Duration::zero(), left);
+      left = std::min(left, left_between(session->now(), next));
   }
   if (wait_or_signal(fds, left) < 0) return false;
   for (auto* session : sessions())

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/pdo_index.hpp"
 #include "base/text.hpp"
+#include "canopen/sdo_frame.hpp"
 #include "drive/cia402.hpp"
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
@@ -21,7 +21,6 @@ constexpr std::uint32_t kEmergencies = 0x080;
 constexpr std::uint32_t kFirstPdo = 0x180;
 constexpr std::uint32_t kLastPdo = 0x57F;
 constexpr std::uint32_t kSdoAnswers = 0x580;
-constexpr std::uint32_t kSdoQuestions = 0x600;
 constexpr std::uint32_t kErrorControl = 0x700;
 
 std::uint16_t word_at(const can::Frame& frame, std::size_t at) {
@@ -31,12 +30,6 @@ std::uint16_t word_at(const can::Frame& frame, std::size_t at) {
 bool is_fault(std::uint16_t statusword) {
   const auto state = drive::decode_state(statusword);
   return state == drive::DriveState::fault || state == drive::DriveState::fault_reaction_active;
-}
-
-/// Initiate download, or block download (CiA 301, 7.2.4.3.3 and 7.2.4.3.9).
-bool asks_to_write(const can::Frame& frame) {
-  const auto command = frame.data[0] >> 5U;
-  return command == 1 || (command == 6 && (frame.data[0] & 1U) == 0);
 }
 
 }  // namespace
@@ -67,14 +60,13 @@ void HeardStates::on_frame(const can::Frame& frame, TimePoint time) {
     tpdos_.insert_or_assign(frame.id, Payload{frame, time});
     return;
   }
+  if (const auto write = canopen::sdo_write_request(frame)) return on_write(write->node, write->object, time);
   const auto node = static_cast<std::uint8_t>(frame.id & 0x7FU);
   const auto service = frame.id & ~0x7FU;
   if (node == 0) return;
   if (service == kErrorControl && frame.size == 1 && frame.data[0] == 0) nodes_[node].started = time;
   if (frame.size != 8) return;
   if (service == kSdoAnswers) on_answer(node, frame, time);
-  if (service == kSdoQuestions && asks_to_write(frame))
-    on_write(node, {word_at(frame, 1), frame.data[3]}, time);
   if (service == kEmergencies) on_emergency(node, word_at(frame, 0), time);
 }
 
@@ -107,7 +99,6 @@ void HeardStates::on_object(const session::Exchange& exchange) {
 
 void HeardStates::on_write(std::uint8_t node, ObjectAddress object, TimePoint time) {
   if (object == objects::kControlword) nodes_[node].commanded = time;
-  if (auto* can = session_->can(); can != nullptr && pdo_at(object.index)) can->forget_pdos(node);
 }
 
 HeardStates::State HeardStates::state(std::uint8_t node, const Family& family) {
@@ -185,12 +176,13 @@ std::optional<HeardStates::Word> HeardStates::status_in_tpdos(std::uint8_t node,
   auto* can = session_->can();
   if (can == nullptr || tpdos_.empty()) return std::nullopt;
   auto& of_node = nodes_[node];
-  const auto* known = can->known_pdos(node);
-  std::optional<Word> out;
-  if (known != nullptr) {
+  auto& out = of_node.in_tpdos;
+  if (const auto* known = can->known_pdos(node)) {
     out = status_in(known->pdos);
     // What came before it was read may have been mapped otherwise.
     if (out && out->time < known->time) out->unsure = true;
+  } else if (can->mapping_was_changed(node)) {
+    if (out) out->unsure = true;  // What came since means something else.
   } else if (const auto* profile = family ? family() : nullptr) {
     if (std::exchange(of_node.family, profile) != profile)
       of_node.assumed = session::pdos_of(session::default_pdo_values(*profile, node));

@@ -38,8 +38,8 @@ class HeardStates {
   };
   /// The data of the node's family; null where they are not known. Asked only where they are needed.
   using Family = std::function<const drive::Profile*()>;
-  /// TPDOs are taken apart by the mapping that was read, else by the one the family leaves the factory with,
-  /// which is assumed.
+  /// TPDOs are taken apart by the mapping that was read, while it holds; else by the one the family leaves
+  /// the factory with, which is assumed, unless somebody has changed it.
   State state(std::uint8_t node, const Family& family = {});
 
  private:
@@ -50,6 +50,7 @@ class HeardStates {
   };
   struct Node {
     std::optional<Word> status;     ///< 6041h.
+    std::optional<Word> in_tpdos;   ///< 6041h in TPDOs, when it was last asked for.
     std::optional<Word> emergency;  ///< Its code; none after an error reset.
     std::uint32_t boots = 0;        ///< When it was heard.
     TimePoint commanded{};          ///< When a controlword was written by object last.

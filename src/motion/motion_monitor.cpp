@@ -10,7 +10,6 @@
 #include "motion/producer_claim.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
-#include "session/process_values.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -46,12 +45,22 @@ void MotionMonitor::find_tpdos() {
   if (tpdos_) return;
   std::vector<ObjectAddress> objects{objects::kStatusword};
   for (const auto signal : channels_) objects.push_back(object_of(signal));
+  mapping_.emplace(*session_, node_);
   tpdos_ = session::process_values(*session_, &units_->profile(), node_, objects);
   // The session learns from it under which CAN-ID emergencies come.
   if (units_->has(objects::kEmergencyCobId)) (void)session_->upload(node_, objects::kEmergencyCobId);
 }
 
+void MotionMonitor::tell_end_of_tpdos() {
+  const auto why = mapping_ ? mapping_->ended() : std::string();
+  if (why.empty()) return;
+  mapping_.reset();
+  if (by_pdo_ > 0 && session_->options().tell)
+    session_->options().tell(fmt::format("node {} {}: its values are read by SDO from now on", node_, why));
+}
+
 std::vector<Result<Bytes>> MotionMonitor::look(std::span<const ObjectAddress> objects) {
+  tell_end_of_tpdos();
   const auto since = std::max(told_at_, session_->now() - kPeriod);
   std::vector<Result<Bytes>> out;
   std::vector<session::SdoRequest> requests;

@@ -10,6 +10,7 @@
 #include "base/series.hpp"
 #include "motion/motion_units.hpp"
 #include "session/network.hpp"
+#include "session/process_values.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::motion {
@@ -52,7 +53,7 @@ class MotionMonitor {
 
   MotionLimits& limits() { return limits_; }
   /// From now on what TPDOs bring is not read by SDO. Reads the drive's mapping (where it does not tell it,
-  /// everything is read) and the COB-ID of its emergencies.
+  /// and once the mapping no longer holds, everything is read) and the COB-ID of its emergencies.
   void find_tpdos();
   /// The drive was told something: what it said before is no answer to it.
   void on_written() { told_at_ = session_->now(); }
@@ -80,6 +81,7 @@ class MotionMonitor {
   std::optional<Series> of_load(const Series& motor) const;
   void follow_zero(const MotionSample& sample);
   std::vector<Result<Bytes>> look(std::span<const ObjectAddress> objects);
+  void tell_end_of_tpdos();
   Result<void> check_events();
   Result<void> check_state(const MotionSample& sample) const;
   Result<void> check_limits(const MotionSample& sample) const;
@@ -90,6 +92,7 @@ class MotionMonitor {
   MotionLimits limits_;
   std::vector<Signal> channels_;  ///< Those the drive has.
   std::unique_ptr<session::ProcessValues> tpdos_;
+  std::optional<session::Lifetime> mapping_;  ///< Of what find_tpdos() read, until its end was told.
   TimePoint told_at_{};
   std::size_t by_pdo_ = 0;
   std::vector<MotionSample> samples_;

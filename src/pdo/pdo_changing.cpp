@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
+#include "pdo/other_pdo.hpp"
 #include "pdo/pdo_neighbours.hpp"
 #include "pdo/pdo_record.hpp"
 #include "session/pdo_change.hpp"
@@ -193,7 +196,7 @@ class Changing {
     auto before = undone_ ? undone_->record : PdoRecord(*desk_, job.present.node);
     if (const auto ready = make_ready(job, before); !ready) {
       desk_->errors.push_back(ready.error());
-      return record(job, "not changed", {});
+      return record_present(job, "not changed", job.present.pdos);
     }
     if (is_idle(job)) {
       before.settle();
@@ -205,11 +208,16 @@ class Changing {
     for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
     end(before, outcome);
     if (!outcome.failure) return record(job, "written, read back", kept(outcome));
-    desk_->errors.push_back(*outcome.failure);
+    auto failure = *outcome.failure;
+    if (auto hint = other_pdo_hint(*desk_->profile, job.present, job.wanted, failure); !hint.empty())
+      failure.hint = std::move(hint);
+    desk_->errors.push_back(std::move(failure));
     if (outcome.all_written) return record(job, "written, read back; keeping it failed", {});
-    if (outcome.rolled_back) return record(job, "not changed: everything is as it was", {});
+    if (outcome.rolled_back)
+      return record_present(job, "not changed: everything is as it was", job.present.pdos);
     add_astray(job, outcome);
-    return record(job, "failed; see the errors", {});
+    const auto now = session::read_pdos(*desk_->session, desk_->profile, job.present.node);
+    return record_present(job, "failed; see the errors", now.value_or(std::vector<Pdo>()));
   }
 
   /// The record goes away when nothing is left to be put back by it.
@@ -249,13 +257,26 @@ class Changing {
     return outcome.kept == session::Kept::yes;
   }
 
+  /// What the drive has of the PDOs that were to change.
+  Record record_present(const Job& job, std::string_view state, const std::vector<Pdo>& present) const {
+    std::vector<Pdo> shown;
+    for (const auto& pdo : job.wanted.pdos)
+      for (const auto& each : present)
+        if (same_pdo(each, pdo)) shown.push_back(each);
+    return record(job, state, {}, shown);
+  }
+
   Record record(const Job& job, std::string_view state, Value kept) const {
+    return record(job, state, std::move(kept), job.wanted.pdos);
+  }
+
+  Record record(const Job& job, std::string_view state, Value kept, std::span<const Pdo> shown) const {
     Record out{{"node", job.present.node},
                {"result", state},
                {"kept", kept, Show::json},
                {"kept", state.starts_with("written") ? settings::kept_text(kept) : Value(), Show::text}};
     List pdos;
-    for (const auto& pdo : job.wanted.pdos) {
+    for (const auto& pdo : shown) {
       const auto lines = show::pdo_lines(desk_->profile, pdo, job.present.node, desk_->chinese,
                                          !desk_->session->network().is_ring());
       for (std::size_t i = 0; i < lines.size(); ++i)

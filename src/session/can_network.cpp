@@ -7,7 +7,6 @@
 #include "canopen/nmt.hpp"
 #include "session/can_object_channel.hpp"
 #include "session/open_bus.hpp"
-#include "session/tpdo_values.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -79,7 +78,7 @@ CanNetwork::CanNetwork(std::unique_ptr<can::Bus> bus, std::string url)
 CanNetwork::~CanNetwork() = default;
 
 std::optional<NodeState> CanNetwork::Records::state(std::uint8_t node) const {
-  const auto state = watch_->state(node);
+  const auto state = guard_->is_lost(node) ? std::nullopt : watch_->state(node);
   return state ? std::optional(node_state(*state)) : std::nullopt;
 }
 
@@ -115,7 +114,7 @@ Result<bool> CanNetwork::step(TimePoint deadline) {
 Result<void> CanNetwork::recover(TimePoint deadline) {
   if (auto back = bus_->recover(deadline); !back) return back;
   watch_.on_gap(now());
-  pdos_.clear();  // Whoever is there now may have others, or be another.
+  epochs_.on_gap();  // Whoever is there now may be another.
   lss_selection_.reset();
   return {};
 }
@@ -124,13 +123,16 @@ void CanNetwork::hear(const can::Frame& frame) {
   watch_.on_frame(frame, stepped_at_);
   duplicates_.on_frame(frame, stepped_at_);
   guard_.on_frame(frame, stepped_at_);
+  epochs_.on_frame(frame);
   if (sync_ && !frame.extended && frame.id == sync_->options.can_id) ++sync_->foreign;
   // By index: who hears may begin or end to listen.
   for (std::size_t i = 0; i < listeners_.size(); ++i) (*listeners_[i])(frame, stepped_at_);
 }
 
 void CanNetwork::dispatch(const can::Frame& frame) {
-  if (frame.id < canopen::kSdoAnswer || frame.id > canopen::kErrorControl + canopen::kLastNode) return;
+  if (frame.extended || frame.id < canopen::kSdoAnswer ||
+      frame.id > canopen::kErrorControl + canopen::kLastNode)
+    return;
   for (auto* channel = channels_[frame.id & 0x7FU]; channel != nullptr; channel = channel->next_)
     channel->on_frame(frame, stepped_at_);
 }
@@ -212,6 +214,7 @@ std::optional<NodeEvent> CanNetwork::take_event() {
 Result<void> CanNetwork::send(const can::Frame& frame) {
   duplicates_.on_sent(frame, now());
   watch_.on_sent(frame);
+  epochs_.on_frame(frame);
   const auto sent = bus_->send(frame);
   if (ordered_ && sent)
     if (const auto order = canopen::parse_nmt(frame))
@@ -265,18 +268,6 @@ void CanNetwork::send_last_word(std::uint8_t node, ObjectAddress object, std::ui
   } catch (...) {
     return;
   }
-}
-
-const CanNetwork::KnownPdos* CanNetwork::known_pdos(std::uint8_t node) const {
-  const auto known = pdos_.find(node);
-  return known == pdos_.end() || known->second.boots != watch_.boots(node) ? nullptr : &known->second;
-}
-
-std::unique_ptr<ProcessValues> CanNetwork::process_values(std::uint8_t node,
-                                                          std::span<const ObjectAddress> objects) {
-  const auto known = pdos_.find(node);
-  const auto pdos = known == pdos_.end() ? std::span<const canopen::Pdo>() : std::span(known->second.pdos);
-  return std::make_unique<TpdoValues>(*this, pdos, objects);
 }
 
 void CanNetwork::guard(std::uint8_t node, canopen::GuardOptions options) {

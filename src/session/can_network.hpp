@@ -17,6 +17,7 @@
 #include "can/error_frame.hpp"
 #include "canopen/duplicate_watch.hpp"
 #include "canopen/lss.hpp"
+#include "canopen/node_epoch.hpp"
 #include "canopen/node_guard.hpp"
 #include "canopen/node_watch.hpp"
 #include "canopen/pdo.hpp"
@@ -95,21 +96,25 @@ class CanNetwork final : public Network {
   canopen::NodeWatch& watch() { return watch_; }
   /// Whether two nodes have one number.
   canopen::DuplicateWatch& duplicates() { return duplicates_; }
+  /// What may have changed the node so far.
+  canopen::NodeEpoch epoch(std::uint8_t node) const;
   /// PDOs of a node as they were read.
   struct KnownPdos {
     std::vector<canopen::Pdo> pdos;
     TimePoint time{};
-    std::uint32_t boots = 0;  ///< How often the node had been heard to start.
+    canopen::NodeEpoch epoch = {};  ///< They hold as long as this is epoch().
   };
-  /// The PDOs that a node has, all of them: process_values() takes their TPDOs for its own.
-  void learn_pdos(std::uint8_t node, std::vector<canopen::Pdo> pdos) {
-    pdos_[node] = {std::move(pdos), now(), watch_.boots(node)};
+  /// The PDOs that a node has, all of them: process_values() takes their TPDOs for its own. `epoch`: when
+  /// their reading began.
+  void learn_pdos(std::uint8_t node, std::vector<canopen::Pdo> pdos, const canopen::NodeEpoch& epoch) {
+    pdos_[node] = {std::move(pdos), now(), epoch};
   }
-  /// What was learned last; null where nothing was, and once the node has restarted or forget_pdos() was
-  /// told.
+  /// What was learned last; null where nothing was, and once it no longer holds.
   const KnownPdos* known_pdos(std::uint8_t node) const;
-  /// Somebody writes to what describes them.
   void forget_pdos(std::uint8_t node) { pdos_.erase(node); }
+  /// Whether a PDO parameter of the node was written since its last boot-up: then its mapping need not be the
+  /// one it starts with.
+  bool mapping_was_changed(std::uint8_t node) const { return epochs_.is_written(node); }
 
   /// Guards a node in every step from now on; what is noticed is among the events.
   void guard(std::uint8_t node, canopen::GuardOptions options);
@@ -143,7 +148,8 @@ class CanNetwork final : public Network {
   /// canopen::NodeWatch in the words of every network.
   class Records final : public NodeRecords {
    public:
-    explicit Records(const canopen::NodeWatch& watch) : watch_(&watch) {}
+    Records(const canopen::NodeWatch& watch, const canopen::NodeGuard& guard)
+        : watch_(&watch), guard_(&guard) {}
     std::optional<NodeState> state(std::uint8_t node) const override;
     std::uint32_t boots(std::uint8_t node) const override { return watch_->boots(node); }
     std::uint32_t heartbeats(std::uint8_t node) const override { return watch_->heartbeats(node); }
@@ -153,6 +159,7 @@ class CanNetwork final : public Network {
 
    private:
     const canopen::NodeWatch* watch_;
+    const canopen::NodeGuard* guard_;
   };
   struct Heartbeat {
     std::uint8_t node;
@@ -173,9 +180,10 @@ class CanNetwork final : public Network {
   std::unique_ptr<can::Bus> bus_;
   std::string url_;
   canopen::NodeWatch watch_;
-  Records records_{watch_};
-  canopen::DuplicateWatch duplicates_;
   canopen::NodeGuard guard_;
+  Records records_{watch_, guard_};
+  canopen::DuplicateWatch duplicates_;
+  canopen::NodeEpochs epochs_;
   std::optional<Heartbeat> heartbeat_;
   std::optional<SyncProduction> sync_;
   can::WireErrors wire_errors_;

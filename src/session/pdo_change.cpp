@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 
+#include "canopen/sdo_abort.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/option_scope.hpp"
@@ -29,6 +31,14 @@ struct Way {
   bool pre_operational = false;
   bool by_count = false;
 };
+
+/// A refusal that says something about the object or the value: it is the same in every state of the node.
+bool is_no_matter_of_state(std::uint32_t abort_code) {
+  using namespace canopen::sdo_abort;
+  constexpr std::array kSuch{kWriteOnly, kReadOnly, kNoObject, kNotMappable, kPdoLength,
+                             kLength,    kTooLong,  kTooShort, kNoSubIndex};
+  return std::find(kSuch.begin(), kSuch.end(), abort_code) != kSuch.end();
+}
 
 /// One change of one node, by as many ways as it takes.
 class Change {
@@ -70,6 +80,9 @@ class Change {
     auto by_count = profile_ == nullptr ? drive::Profile{} : *profile_;
     by_count.rules.pdo.disable_by_count = true;
     auto out = restore(*session_, way.by_count ? &by_count : profile_, node_, *present_, *wanted_, options_);
+    // What a node refused in the state it was in, and answers otherwise now, it refused as operational.
+    if (refused_state_ && (!out.failure || out.failure->abort_code != canopen::sdo_abort::kDeviceState))
+      pause.note_before(NodeState::operational);
     if (out.failure && !out.astray.empty()) put_back_what_is_used(out);
     const auto left = pause.leave(out.astray.empty());
     if (!left && !out.failure) out.failure = left.error();
@@ -111,10 +124,12 @@ class Change {
     const auto place = canopen::pdo_at(object.index);
     if (!place) return std::nullopt;
     auto next = way;
-    if (!way.pre_operational) {
+    const auto code = outcome.failure->abort_code.value_or(0);
+    if (!way.pre_operational && !is_no_matter_of_state(code)) {
       // A drive that can move is not stopped on a guess; one that does not tell may be.
       if (!check_not_energised(*session_, node_)) return std::nullopt;
       next.pre_operational = true;
+      refused_state_ = code == canopen::sdo_abort::kDeviceState;
       note(*outcome.failure, "pre-operational");
       return next;
     }
@@ -136,6 +151,7 @@ class Change {
   const Values* wanted_;
   RestoreOptions options_;
   std::vector<std::string> notices_;
+  bool refused_state_ = false;  ///< Where the node was not put into a state: because of the one it was in.
 };
 
 void set(Values& out, const Values& present, ObjectAddress object, std::uint64_t value) {

@@ -32,7 +32,8 @@ bool needs_pre_operational(const drive::Profile* profile, const std::vector<Plan
 /// one node, `present` with all entries in use. Where the family demands it the node is pre-operational in
 /// between, and its state put back, unless a PDO is neither as wanted nor as it was. A drive of which nothing
 /// more is known than the standards, and that refuses, is tried once more pre-operational, unless it is
-/// energised, and once more with its COB-ID left alone; the notices say so.
+/// energised or the refusal is no matter of the state, and once more with its COB-ID left alone; the notices
+/// say so.
 RestoreOutcome change_pdos(Session& session, const drive::Profile* profile, std::uint8_t node,
                            const Values& present, const Values& wanted, const RestoreOptions& options);
 

@@ -191,6 +191,10 @@ Pdo pdo_of(const Values& values, PdoDirection direction, std::uint16_t pdo_numbe
 
 std::vector<Result<Values>> read_pdo_values(Session& session, const drive::Profile* profile,
                                             std::span<const std::uint8_t> nodes) {
+  auto* can = session.can();
+  std::vector<canopen::NodeEpoch> epochs;
+  if (can != nullptr)
+    for (const auto node : nodes) epochs.push_back(can->epoch(node));
   NodeReader reading(session, nodes);
   const auto known = profile == nullptr ? std::vector<ObjectAddress>() : heads_of(*profile);
   if (known.empty()) {
@@ -203,9 +207,12 @@ std::vector<Result<Values>> read_pdo_values(Session& session, const drive::Profi
   }
   reading.read_entries();
   auto out = std::move(reading).take();
-  if (auto* can = session.can())
-    for (std::size_t i = 0; i < out.size(); ++i)
-      if (out[i]) can->learn_pdos(nodes[i], pdos_of(*out[i]));
+  for (std::size_t i = 0; can != nullptr && i < out.size(); ++i) {
+    if (out[i])
+      can->learn_pdos(nodes[i], pdos_of(*out[i]), epochs[i]);
+    else
+      can->forget_pdos(nodes[i]);
+  }
   return out;
 }
 

@@ -1,5 +1,7 @@
 #include "session/process_values.hpp"
 
+#include <algorithm>
+
 #include "session/can_network.hpp"
 #include "session/pdo_setup.hpp"
 
@@ -12,12 +14,32 @@ std::unique_ptr<ProcessValues> process_values(Session& session, const drive::Pro
   return session.network().process_values(node, objects);
 }
 
-void learn_pdos(Session& session, const drive::Profile* profile, std::span<const std::uint8_t> nodes) {
-  auto* can = session.can();
-  if (can == nullptr) return;
-  const auto answers = read_pdos(session, profile, nodes);
-  for (std::size_t i = 0; i < answers.size(); ++i)
-    can->learn_pdos(nodes[i], answers[i].value_or(std::vector<canopen::Pdo>()));
+bool learn_pdos(Session& session, const drive::Profile* profile, std::span<const std::uint8_t> nodes) {
+  if (session.can() == nullptr) return true;
+  const auto answers = read_pdo_values(session, profile, nodes);
+  return std::all_of(answers.begin(), answers.end(), [](const auto& answer) { return answer.has_value(); });
+}
+
+Lifetime::Lifetime(Session& session, std::uint8_t node)
+    : session_(&session), node_(node), learned_(epoch()), seen_(learned_) {}
+
+canopen::NodeEpoch Lifetime::epoch() const {
+  if (const auto* can = session_->can()) return can->epoch(node_);
+  canopen::NodeEpoch out;
+  out.boots = session_->watch().boots(node_);
+  return out;
+}
+
+std::string Lifetime::ended() const { return canopen::reason_between(learned_, epoch()); }
+
+bool Lifetime::is_to_renew() {
+  if (const auto now = epoch(); now != seen_) {
+    seen_ = now;
+    due_ = session_->now() + kSettling;
+  }
+  if (session_->now() < due_) return false;
+  due_ = session_->now() + kAgain;
+  return true;
 }
 
 }  // namespace servoctl::session

@@ -28,6 +28,11 @@ class StatePause {
   /// false, stays Pre-operational, which notices() says.
   Result<void> leave(bool put_back);
 
+  /// What it did meanwhile shows the state that it was in, where it did not tell that itself.
+  void note_before(NodeState state) {
+    if (!before_) before_ = state;
+  }
+
   bool entered() const { return entered_; }
   const std::vector<std::string>& notices() const { return notices_; }
 

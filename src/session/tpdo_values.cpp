@@ -5,9 +5,12 @@
 
 namespace servoctl::session {
 
-TpdoValues::TpdoValues(CanNetwork& network, std::span<const canopen::Pdo> pdos,
+TpdoValues::TpdoValues(CanNetwork& network, std::uint8_t node, std::span<const canopen::Pdo> pdos,
                        std::span<const ObjectAddress> objects)
-    : hearing_(&network, [this](const can::Frame& frame, TimePoint time) { on_frame(frame, time); }) {
+    : network_(&network),
+      node_(node),
+      epoch_(network.epoch(node)),
+      hearing_(&network, [this](const can::Frame& frame, TimePoint time) { on_frame(frame, time); }) {
   for (const auto object : objects) values_[object];
   for (const auto& pdo : pdos) {
     const bool carries = std::any_of(pdo.entries.begin(), pdo.entries.end(), [&](const auto& entry) {
@@ -18,16 +21,17 @@ TpdoValues::TpdoValues(CanNetwork& network, std::span<const canopen::Pdo> pdos,
 }
 
 std::optional<Bytes> TpdoValues::take(ObjectAddress object, TimePoint since) {
+  if (!holds()) return std::nullopt;
   const auto known = values_.find(object);
   if (known == values_.end() || !known->second || known->second->time < since) return std::nullopt;
   return std::exchange(known->second, std::nullopt)->bytes;
 }
 
 bool TpdoValues::carries(ObjectAddress object) const {
-  return std::any_of(pdos_.begin(), pdos_.end(), [&](const canopen::Pdo& pdo) {
-    return std::any_of(pdo.entries.begin(), pdo.entries.end(),
-                       [&](const auto& entry) { return entry.object == object; });
-  });
+  return holds() && std::any_of(pdos_.begin(), pdos_.end(), [&](const canopen::Pdo& pdo) {
+           return std::any_of(pdo.entries.begin(), pdo.entries.end(),
+                              [&](const auto& entry) { return entry.object == object; });
+         });
 }
 
 void TpdoValues::on_frame(const can::Frame& frame, TimePoint time) {
@@ -36,7 +40,7 @@ void TpdoValues::on_frame(const can::Frame& frame, TimePoint time) {
     const bool extended = (pdo.cob_id & canopen::kPdoExtended) != 0;
     if (frame.id != (pdo.cob_id & canopen::kPdoCobIdMask) || frame.extended != extended) continue;
     // Another length is another mapping than the one that was read.
-    if (frame.size != (pdo.bits() + 7) / 8) continue;
+    if (frame.size != (pdo.bits() + 7) / 8 || !holds()) continue;
     auto parts = canopen::unpack_pdo(pdo.entries, frame.payload());
     for (std::size_t i = 0; parts && i < parts->size(); ++i) {
       const auto place = values_.find(pdo.entries[i].object);

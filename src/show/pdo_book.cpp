@@ -187,9 +187,9 @@ PdoBook::Node& PdoBook::node(std::uint8_t id) {
 }
 
 void PdoBook::set(std::uint8_t id, session::Values values) {
-  auto& place = nodes_[id];
-  place.at_start = std::move(values);
-  place.now = place.at_start;
+  auto& place = node(id);
+  place.now = std::move(values);
+  place.told.clear();
   for (const auto& value : place.now) place.told.insert(value.first);
   rebuild(id);
 }

@@ -1,5 +1,6 @@
 // What was heard, and what it means.
 #include <fmt/format.h>
+#include <utility>
 
 #include "base/number.hpp"
 #include "drive/bitrate.hpp"
@@ -158,12 +159,21 @@ void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkF
   if (picture.extended() > 0)
     out.push_back(
         {Level::note, "foreign-frames", fmt::format("{} frames have 29-bit identifiers", picture.extended()),
-         "CANopen has none: something else is on the bus too",
-         "find out which device sends them (`candump` shows them); where it is to be on this bus, the load is "
-         "all that it costs"});
+         "of CANopen only PDOs can have them: PDOs that were set so, or another protocol on this bus",
+         "`pdo show` shows the CAN-IDs that a drive has for its PDOs, `monitor` the frames; where another device "
+         "is to be on this bus, the load is all that it costs"});
 }
 
 }  // namespace
+
+void add_fd_frames(std::vector<Finding>& findings, std::string text) {
+  std::erase_if(findings, [](const Finding& finding) { return finding.code == "silence"; });
+  findings.push_back(
+      {Level::note, "fd-frames", std::move(text),
+       "CANopen FD, or another protocol: servoctl counts these frames and does not read them",
+       "set the drives to classical CAN, if they are to be used with servoctl; a controller without CAN FD "
+       "on this bus destroys such frames"});
+}
 
 std::vector<Finding> bus_findings(const BusPicture& picture, const LinkFacts* facts) {
   std::vector<Finding> out;

@@ -132,6 +132,8 @@ Result<std::vector<Finding>> hear_link(can::LinkControl& link, LinkFacts& facts,
   if (!after) return fail(after.error());
   facts.state = *after;
   auto out = bus_findings(picture, &facts);
+  const auto notices = (*bus)->take_notices();
+  if (!notices.empty()) add_fd_frames(out, notices.front());
   if (!asked.empty()) drop_advice(out);
   add(out, std::move(asked));
   return out;

@@ -28,6 +28,9 @@ std::vector<Finding> link_findings(const LinkFacts& facts);
 /// on `local:` and `sim:`.
 std::vector<Finding> bus_findings(const BusPicture& picture, const LinkFacts* facts);
 
+/// Adds that CAN FD frames came, in these words: such a bus is not silent.
+void add_fd_frames(std::vector<Finding>& findings, std::string text);
+
 /// Where there is no interface at all. `serial`: the ports of can::serial_adapters().
 std::vector<Finding> no_interface_findings(bool kernel_has_can, const std::vector<std::string>& serial);
 

@@ -1,6 +1,7 @@
 #include "traffic/listening.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "session/can_network.hpp"
 #include "session/stretch.hpp"
@@ -48,6 +49,14 @@ Result<void> listen(session::Session& session, std::optional<Duration> length, c
     if (!lost || !listener.on_bus) return ended;
     if (auto back = bus.wait(ended.error(), stretch.end()); !back) return back;
   }
+}
+
+void tell_now(show::Desk& desk, std::string line) {
+  const auto& tell = desk.session->options().tell;
+  if (tell && !desk.json)
+    tell(line);
+  else
+    desk.notices.push_back(std::move(line));
 }
 
 bool has_summary(const Result<void>& ended, std::vector<Error>& errors) {

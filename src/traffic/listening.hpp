@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "session/bus_return.hpp"
+#include "show/desk.hpp"
 
 /// What commands that listen to the bus have in common.
 namespace servoctl::traffic {
@@ -33,6 +35,9 @@ struct Listener {
 /// not waited for, or did not come back; else as BusReturn::wait(). Whoever has something to show behind such
 /// an end shows it beside the error: has_summary().
 Result<void> listen(session::Session& session, std::optional<Duration> length, const Listener& listener);
+
+/// Shows a line while the command goes on; with `--json` it becomes a notice of the result.
+void tell_now(show::Desk& desk, std::string line);
 
 /// Whether a summary of what came before is shown all the same; an error of the bus is put beside it.
 bool has_summary(const Result<void>& ended, std::vector<Error>& errors);

@@ -9,7 +9,6 @@
 #include "base/csv.hpp"
 #include "base/number.hpp"
 #include "session/measure.hpp"
-#include "session/process_values.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::traffic {
@@ -17,12 +16,13 @@ namespace {
 
 using report::Value;
 
-/// What the drives say their units are worth, each asked once.
-void add_bridges(show::Desk& desk, std::vector<Channel>& channels) {
+/// What the drives say their units are worth, each asked once. `node`: of this one alone.
+void add_bridges(show::Desk& desk, std::vector<Channel>& channels, std::optional<std::uint8_t> node = {}) {
   if (desk.profile == nullptr) return;
   std::vector<session::MeasureQuestion> questions;
   std::vector<Channel*> asking;
   for (auto& channel : channels) {
+    if (node && channel.node != *node) continue;
     const auto measure = drive::meaning(channel.target, channel.node).measure;
     if (!measure || desk.profile->rules.units.count(*measure) == 0) continue;
     questions.push_back({channel.node, *measure});
@@ -32,6 +32,7 @@ void add_bridges(show::Desk& desk, std::vector<Channel>& channels) {
   const auto measures = session::read_measures(*desk.session, *desk.profile, questions);
   for (std::size_t i = 0; i < asking.size(); ++i) {
     const auto unit = drive::meaning(asking[i]->target, asking[i]->node).unit;
+    asking[i]->bridge.reset();
     if (measures[i]) asking[i]->bridge = drive::bridge(unit, asking[i]->target.address, measures[i]->value);
   }
 }
@@ -79,30 +80,36 @@ Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> nam
 }
 
 void Sampler::begin_hearing() {
-  session::learn_pdos(*desk_->session, desk_->profile, desk_->nodes);
-  for (const auto node : desk_->nodes) {
+  std::vector<session::Lifetime> lifetimes;
+  for (const auto node : desk_->nodes) lifetimes.emplace_back(*desk_->session, node);
+  (void)session::learn_pdos(*desk_->session, desk_->profile, desk_->nodes);
+  for (std::size_t i = 0; i < lifetimes.size(); ++i) {
     std::vector<ObjectAddress> objects;
     for (const auto& channel : channels_)
-      if (channel.node == node) objects.push_back(channel.target.address);
-    sources_.push_back({node, desk_->session->network().process_values(node, objects)});
-    sources_.back().values->keep_all();
+      if (channel.node == desk_->nodes[i]) objects.push_back(channel.target.address);
+    sources_.emplace_back(*desk_, desk_->nodes[i], std::move(objects), lifetimes[i]);
   }
 }
 
 std::vector<Sample> Sampler::gather() {
   std::vector<Sample> out;
-  for (const auto& source : sources_)
-    for (auto& arrival : source.values->take_all())
+  for (auto& source : sources_)
+    for (auto& arrival : source.take_all())
       for (std::size_t i = 0; i < channels_.size(); ++i)
-        if (channels_[i].node == source.node && channels_[i].target.address == arrival.object)
+        if (channels_[i].node == source.node() && channels_[i].target.address == arrival.object)
           out.push_back({i, arrival.time, arrival.value, true});
+  renew();
   return out;
 }
 
+void Sampler::renew() {
+  for (auto& source : sources_)
+    if (source.renew()) add_bridges(*desk_, channels_, source.node());
+}
+
 bool Sampler::is_carried(std::size_t channel) const {
-  return std::any_of(sources_.begin(), sources_.end(), [&](const Source& source) {
-    return source.node == channels_[channel].node &&
-           source.values->carries(channels_[channel].target.address);
+  return std::any_of(sources_.begin(), sources_.end(), [&](const NodeSource& source) {
+    return source.node() == channels_[channel].node && source.carries(channels_[channel].target.address);
   });
 }
 

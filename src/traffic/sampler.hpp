@@ -1,14 +1,13 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/series.hpp"
 #include "base/statistics.hpp"
-#include "session/network.hpp"
 #include "show/desk.hpp"
 #include "show/reading.hpp"
+#include "traffic/node_source.hpp"
 
 namespace servoctl::traffic {
 
@@ -36,7 +35,8 @@ class Sampler {
   /// mapping; one that does not tell it is read by SDO alone.
   static Result<Sampler> make(show::Desk& desk, std::span<const std::string> names);
 
-  /// What came by itself since the call before, in all waits.
+  /// What came by itself since the call before, in all waits. To be called often: it notices as well when
+  /// what was learned of a node no longer holds, and asks the node again.
   std::vector<Sample> gather();
   /// Reads these channels, all nodes at the same time; in the order of `wanted`.
   std::vector<Sample> read(std::span<const std::size_t> wanted);
@@ -50,16 +50,11 @@ class Sampler {
  private:
   explicit Sampler(show::Desk& desk) : desk_(&desk) {}
   void begin_hearing();
-
-  /// What one node sends by itself.
-  struct Source {
-    std::uint8_t node = 0;
-    std::unique_ptr<session::ProcessValues> values;
-  };
+  void renew();
 
   show::Desk* desk_;
   std::vector<Channel> channels_;
-  std::vector<Source> sources_;
+  std::vector<NodeSource> sources_;
 };
 
 /// Errc::usage for a channel whose object is known to be no number.

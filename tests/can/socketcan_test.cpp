@@ -109,6 +109,23 @@ TEST_F(SocketCan, ReceivesRemoteAnd29BitFrames) {
   EXPECT_EQ(received(), frame_of("00000123#55"));
 }
 
+/// 72 bytes: struct canfd_frame. It has no place in a frame of CANopen, and must not look like silence.
+TEST_F(SocketCan, CountsCanFdFramesAndGivesTheOthers) {
+  std::array<std::uint8_t, 72> fd{};
+  fd[0] = 0x81;
+  fd[1] = 0x05;
+  fd[4] = 64;
+  ASSERT_EQ(::send(kernel_.get(), fd.data(), fd.size(), 0), 72);
+  put(raw_frame(0x581, 1, {0x60}));
+  ASSERT_EQ(::send(kernel_.get(), fd.data(), fd.size(), 0), 72);
+  EXPECT_EQ(received(), frame_of("581#60"));
+  EXPECT_EQ(received(), std::nullopt);
+  EXPECT_EQ(
+      bus_->take_notices(),
+      std::vector<std::string>{"can0: 2 CAN FD frames came; servoctl reads frames of classical CAN only"});
+  EXPECT_TRUE(bus_->take_notices().empty());
+}
+
 TEST_F(SocketCan, ReceivesReportsOfTheControllerAsErrors) {
   put(raw_frame(0x2000'0040, 8, {0, 0, 0, 0, 0, 0, 0x80, 0x90}));
   const auto bus_off = received();

@@ -137,6 +137,32 @@ TEST(HeardStatesTest, ByAMappingThatWasReadAreSureUntilItIsWrittenOrTheNodeResta
   EXPECT_EQ(at.state(), "switch on disabled?");
 }
 
+TEST(HeardStatesTest, AreNotAssumedByTheFactoryMappingOnceSomebodyWroteAnother) {
+  HeardAt at("sim:gsd600@1", "gsd600", "1");
+  at.run("nmt preop");
+  at.run("write 0x1800:1 0xC0000181");
+  at.run("write 0x1A00:0 0");
+  at.run("write 0x1A00:1 0x60770010");
+  at.run("write 0x1A00:0 1");
+  at.run("write 0x1800:1 0x40000181");
+  at.run("nmt start");
+  at.pass(milliseconds(2500));
+  EXPECT_EQ(at.state().find("ready"), std::string::npos) << "torque 0 is no statusword: " << at.state();
+  EXPECT_EQ(at.state(), "");
+}
+
+TEST(HeardStatesTest, OfANodeWhoseHeartbeatIsGoneNoStateIsShown) {
+  HeardAt at("sim:gsd600@1", "gsd600", "1");
+  at.run("heartbeat set 100ms");
+  at.run("nmt start");
+  at.pass(seconds(1));
+  EXPECT_NE(at.state(), "");
+  at.run("heartbeat set 0s");
+  at.pass(seconds(1));
+  const auto records = at.shell.session()->watch().state(1);
+  EXPECT_FALSE(records.has_value()) << "it was heard before its heartbeat ended";
+}
+
 TEST(HeardStatesTest, WithoutAFamilyAreNotTakenFromFramesOfAnUnknownMapping) {
   HeardAt at("sim:gsd600@1", "", "1");
   at.run("nmt start");

@@ -161,6 +161,93 @@ TEST_F(Sampling, EachValueHasTheTimeOfItsOwnFrame) {
         << "frames " << seen[i] - seen[i - 1] << " s apart";
 }
 
+/// TPDO1 carries the torque where it leaves the factory with the statusword, of the same length.
+class SamplingAfterARestart : public Sampling {
+ protected:
+  void build_mapped() {
+    build("gsd600@1", "gsd600");
+    start_node();
+    const auto write = [&](ObjectAddress object, std::uint64_t value, std::size_t size) {
+      ASSERT_TRUE(session->download(1, object, store_le(value, size))) << to_string(object);
+    };
+    write({0x1800, 1}, 0xC000'0181, 4);
+    write({0x1A00, 0}, 0, 1);
+    write({0x1A00, 1}, 0x6077'0010, 4);
+    write({0x1A00, 0}, 1, 1);
+    write({0x1800, 2}, 255, 1);
+    write({0x1800, 3}, 0, 2);
+    write({0x1800, 5}, 20, 2);
+    write({0x1800, 1}, 0x4000'0181, 4);
+  }
+  /// Another master resets the node after a second, and starts it after two.
+  void reset_and_start() {
+    bus->on_receive = [this, begin = session->now(), done = 0](can::Frame&) mutable {
+      if (done < 1 && session->now() > begin + 1s) {
+        done = 1;
+        (void)sim_bus.send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1));
+      }
+      if (done < 2 && session->now() > begin + 2s) {
+        done = 2;
+        (void)sim_bus.send(canopen::nmt_frame(canopen::NmtCommand::start, 1));
+      }
+    };
+  }
+  static std::string json_of(const Result<report::Value>& result) {
+    return result ? report::to_json(*result) : result.error().message;
+  }
+};
+
+TEST_F(SamplingAfterARestart, WatchNeverTakesTheStatuswordForTheTorque) {
+  build_mapped();
+  reset_and_start();
+  const auto json = json_of(run("watch", {{"object", "0x6077"}, {"--for", "5s"}, {"--every", "50ms"}}));
+  EXPECT_NE(json.find("\"max\":0,"), std::string::npos) << json.substr(0, 400);
+  EXPECT_NE(json.find("\"by\":\"pdo\""), std::string::npos);
+  EXPECT_NE(json.find("\"by\":\"sdo\""), std::string::npos);
+  EXPECT_TRUE(is_noticed("node 1 has restarted: its values are read by SDO"));
+}
+
+TEST_F(SamplingAfterARestart, ScopeNeverTakesTheStatuswordForTheTorque) {
+  build_mapped();
+  reset_and_start();
+  const auto json = json_of(run("scope", {{"object", "0x6077"}, {"--for", "5s"}}));
+  EXPECT_NE(json.find("\"max\":0,"), std::string::npos) << json.substr(0, 400);
+  EXPECT_TRUE(is_noticed("node 1 has restarted"));
+}
+
+TEST_F(SamplingAfterARestart, TheMappingIsReadAgainAndUsed) {
+  build_mapped();
+  reset_and_start();
+  const auto json = json_of(run("watch", {{"object", "0x6041"}, {"--for", "8s"}, {"--every", "100ms"}}));
+  EXPECT_LT(json.find("\"by\":\"sdo\""), json.rfind("\"by\":\"pdo\"")) << "the factory's TPDO1 carries it";
+}
+
+TEST_F(SamplingAfterARestart, PdoWatchShowsNoValuesUntilTheMappingWasReadAgain) {
+  build_mapped();
+  reset_and_start();
+  const auto json = json_of(run("pdo watch", {{"pdo", "TPDO1"}, {"--for", "8s"}}));
+  EXPECT_TRUE(is_noticed("node 1 has restarted: its PDOs are shown without values"));
+  EXPECT_TRUE(is_noticed("node 1: its PDO mapping was read again"));
+  EXPECT_NE(json.find("Torque"), std::string::npos);
+  EXPECT_NE(json.find("Statusword"), std::string::npos) << "of the mapping that it has now";
+  for (auto at = json.find("\"index\":24695"); at != std::string::npos;
+       at = json.find("\"index\":24695", at + 1))
+    EXPECT_NE(json.substr(at, 200).find("\"raw\":0,"), std::string::npos) << json.substr(at, 200);
+}
+
+TEST_F(SamplingAfterARestart, MonitorSaysFactoryMappingAndReadsItAgainWhereItAsked) {
+  build_mapped();
+  reset_and_start();
+  const auto json = json_of(run("monitor", {{"--ask", "true"}, {"--for", "8s"}}));
+  EXPECT_TRUE(is_noticed("node 1: its PDO mapping was read again"));
+  // TPDO1 with the torque before the restart; with the statusword, never the torque, afterwards.
+  const auto restart = json.find("\"boot-up\"");
+  ASSERT_NE(restart, std::string::npos);
+  EXPECT_NE(json.substr(0, restart).find("\"index\":24695"), std::string::npos);
+  EXPECT_EQ(json.substr(restart).find("\"index\":24695,\"sub\":0,\"name\":\"Torque actual value\",\"value\""),
+            std::string::npos);
+}
+
 TEST_F(Sampling, ADriveThatIsGoneAtTheEndMakesTheExitCode) {
   build("gsd600@1", "gsd600");
   for (const auto* command : {"scope", "watch"}) {

@@ -140,6 +140,35 @@ TEST_F(MotionTrouble, ATpdoThatIsOldOrOfAnotherLengthIsNotBelieved) {
   EXPECT_EQ(done.by_pdo, 0U);
 }
 
+/// Another master maps something else of the same length while the drive moves.
+TEST_F(MotionTrouble, OnceAnotherMasterChangesTheMappingEverythingIsReadBySdo) {
+  map_tpdo(bench);
+  std::string told;
+  bench.session->options().tell = [&](std::string_view line) { told += std::string(line) + "\n"; };
+  const auto changed = std::chrono::milliseconds(500);
+  std::optional<TimePoint> begin;
+  bool written = false;
+  bench.bus->alter = [&](can::Frame& frame) {
+    if (frame.id != 0x181) return;
+    if (!begin && bench.energised()) begin = bench.session->now();
+    if (!begin || bench.session->now() < *begin + changed) return;
+    if (!std::exchange(written, true)) {
+      bench.bus->injected.emplace_back("601#23001A0220006C60");
+      return;
+    }
+    frame.data[0] = 0x08;  // No statusword: fault, to who takes it for one.
+    frame.data[1] = 0;
+  };
+  const auto done = bench.jog(jog_turns("60rpm", 2));
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(written);
+  EXPECT_GT(done.by_pdo, 0U);
+  EXPECT_NE(
+      told.find("node 1 has another PDO setting: object 0x1A00:2 was written: its values are read by SDO"),
+      std::string::npos)
+      << told;
+}
+
 TEST_F(MotionTrouble, AShortMoveIsDoneWhenTheMotorIsThereAndNotBefore) {
   MotionBench own("dm", 0);
   const auto done = own.move(move_to("0.4deg", "30rpm", true));

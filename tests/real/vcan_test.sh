@@ -187,5 +187,22 @@ head -200 "$work/full.log" >"$work/part.log"
 sleep 0.2
 check "what replay has sent" "$(awk '{ print $3 }' "$work/part.log" | md5sum)" "$(awk '{ print $3 }' "$work/again" | md5sum)"
 
+# 12. PDOs as over every other kind of CAN bus, also with CAN-IDs of 29 bits.
+python3 "$(dirname "$0")/../cli/pdo_buses_test.py" "$servoctl" vcan1 >"$work/pdos" 2>&1
+check "PDOs over SocketCAN" 0 $?
+grep FAILED -A 12 "$work/pdos"
+
+# 13. CAN FD frames are no silence.
+(while sleep 0.05; do cansend vcan1 181##011223344; done) &
+flood=$!
+contains "a monitor counts CAN FD frames" "CAN FD frames came" "$("$servoctl" monitor --bus vcan1 --for 500ms --json)"
+contains "the doctor finds them" '"fd-frames"' "$("$servoctl" doctor vcan1 --for 500ms --json)"
+kill $flood
+"$servoctl" sim gsd600@1 --bus vcan1 >"$work/sim13.out" 2>&1 &
+wait_for "$work/sim13.out" vcan1
+(while sleep 0.05; do cansend vcan1 181##011223344; done) &
+contains "pdo watch says that they came" "CAN FD frames came" "$("$servoctl" pdo watch -n 1 -d gsd600 --bus vcan1 --for 1s 2>&1)"
+kill $!
+
 printf '%d checks, %d failed\n' "$checks" "$failures"
 [ "$failures" -eq 0 ]

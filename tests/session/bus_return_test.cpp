@@ -152,7 +152,7 @@ TEST_F(BusReturnTest, DoesNotTakeTheTimeWithoutTheBusForASilenceOfNodes) {
 }
 
 TEST_F(BusReturnTest, WhatWasKnownOfTheNodesIsForgotten) {
-  session->can()->learn_pdos(1, {});
+  session->can()->learn_pdos(1, {}, session->can()->epoch(1));
   session->can()->lss_selection() = canopen::LssAddress{1, 2, 3, 4};
   wire->lose(TimePoint(2s), TimePoint(3s));
   BusReturn bus(*session, BusReturn::to_people(*session));

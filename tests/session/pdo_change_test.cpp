@@ -229,9 +229,41 @@ TEST(PdoChange, OfAnUnknownDriveThatKeepsItsCobIdIsTriedAgainWithout) {
   pdo.entries = {entry(0x60640020)};
   const auto outcome = world.change({pdo});
   ASSERT_FALSE(outcome.failure) << outcome.failure->message;
-  ASSERT_EQ(outcome.notices.size(), 2U);
-  EXPECT_NE(outcome.notices[1].find("with the COB-ID left alone"), std::string::npos);
+  ASSERT_FALSE(outcome.notices.empty());
+  EXPECT_NE(outcome.notices[0].find("with the COB-ID left alone"), std::string::npos);
   EXPECT_EQ(world.pdo("TPDO2"), pdo);
+}
+
+/// What is read-only is so in every state: the node is not stopped for it.
+TEST(PdoChange, AMappingThatIsReadOnlyIsNotTriedPreOperational) {
+  auto profile = PdoWorld::profile_of("ts");
+  profile.dictionary.find({0x1A01, 0})->access = od::Access::ro;
+  PdoWorld world(profile, 1);
+  world.client_profile = nullptr;
+  auto pdo = world.pdo("TPDO2");
+  pdo.entries = {entry(0x60640020)};
+  const auto outcome = world.change({pdo});
+  ASSERT_TRUE(outcome.failure);
+  EXPECT_TRUE(outcome.rolled_back);
+  for (const auto& frame : world.sent) EXPECT_FALSE(frame.starts_with("000#")) << frame;
+  EXPECT_EQ(world.drive().nmt_state(), NmtState::operational);
+}
+
+/// Nothing tells the state but the drive itself: it refused as long as it was operational, and not
+/// afterwards.
+TEST(PdoChange, ADriveThatRefusedBecauseOfItsStateIsStartedAgain) {
+  PdoWorld world(PdoWorld::profile_of("da200"), 1);
+  world.client_profile = nullptr;
+  auto quiet = world.session({});
+  ASSERT_TRUE(quiet.download(1, {0x1017, 0}, {0, 0}));
+  ASSERT_TRUE(quiet.download(1, {0x100C, 0}, {100, 0}));
+  ASSERT_TRUE(quiet.download(1, {0x100D, 0}, {3}));
+  auto pdo = world.pdo("TPDO2");
+  pdo.entries = {entry(pdo.entries.size() == 1 ? 0x60640020 : 0x60410010)};
+  const auto outcome = world.change({pdo});
+  ASSERT_FALSE(outcome.failure) << outcome.failure->message;
+  ASSERT_EQ(outcome.notices.size(), 1U) << testing::PrintToString(outcome.notices);
+  EXPECT_EQ(world.drive().nmt_state(), NmtState::operational);
 }
 
 TEST(PdoChange, OfAKnownDriveIsNotTriedAgain) {

@@ -218,5 +218,12 @@ TEST(BusFindings, TellOfFramesThatAreNotOfCanOpen) {
   EXPECT_EQ(codes(bus_findings(picture({other}), &known)), Codes{"foreign-frames"});
 }
 
+TEST(BusFindings, ABusOfCanFdFramesIsNotSilent) {
+  const auto known = facts();
+  auto silent = bus_findings(picture({}), &known);
+  add_fd_frames(silent, "7 CAN FD frames came");
+  EXPECT_EQ(codes(silent), Codes{"fd-frames"});
+}
+
 }  // namespace
 }  // namespace servoctl::traffic

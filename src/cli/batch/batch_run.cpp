@@ -6,6 +6,7 @@
 
 #include "base/printable.hpp"
 #include "base/signal_wait.hpp"
+#include "base/timespec.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "session/open_bus.hpp"
 #include "session/stretch.hpp"
@@ -117,7 +118,7 @@ class BatchRun {
     const auto end = steady_now() + length;
     while (out.errors.empty() && steady_now() < end && !shell_->cancelled()) {
       pollfd nothing{-1, POLLIN, 0};
-      (void)shell_->wait_for(nothing, end - steady_now(), lost);
+      (void)shell_->wait_for(nothing, left_until(end), lost);
     }
     for (auto& notice : shell_->take_notices(profile(), shell_->defaults().chinese))
       out.notices.push_back(std::move(notice));
