@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/unit.hpp"
+#include "od/real_number.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -189,6 +190,8 @@ Meaning fitted(Meaning meaning, std::size_t bytes) {
 }
 
 Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
+  if (!od::is_number(meaning.encoding, value))
+    return fail(Errc::usage, "its bits are those of infinity or of no number (NaN)", "give a finite number");
   const bool low = meaning.min && compare(meaning, value, *meaning.min) < 0;
   const bool high = meaning.max && compare(meaning, value, *meaning.max) > 0;
   if (!low && !high && !is_too_little(meaning, value)) return {};

@@ -21,10 +21,14 @@ constexpr double kNoiseRpm = 3;
 /// A motor is run away that turns so much faster than it was told to, and more than its noise.
 constexpr double kOverspeed = 1.5;
 constexpr double kNoiseOfOverspeed = 5;
-constexpr double kLongest = 86'400;    ///< Seconds; longer is for ever.
-constexpr double kDegreesASecond = 6;  ///< Of 1 rpm.
+constexpr double kLongest = 86'400;  ///< Seconds; longer is for ever.
 /// What servoctl chose itself need not be met exactly; what is farther off is told.
 constexpr double kChosenLoss = 0.1;
+
+/// The drive was asked, and what it says is not known.
+bool is_unanswered(const Error& error) {
+  return error.code != Errc::usage && error.code != Errc::refused && error.code != Errc::sdo_abort;
+}
 
 }  // namespace
 
@@ -40,12 +44,14 @@ Result<void> Motion::prepare() {
   if (const auto alive = power_.statusword(); !alive) return fail(without_first_axis(alive.error()));
   units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder,
                                          options_.learned, options_.load);
+  if (const auto& lost = units_->unanswered()) return fail(*lost);
   monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
   auto panel = checked_panel(*profile_, options_.panel);
   if (!panel) return fail(panel.error());
   options_.panel = std::move(*panel);
   if (const auto done = read_limits(); !done) return done;
   speed_cap_ = find_speed_cap();
+  if (!speed_cap_ && is_unanswered(speed_cap_.error())) return fail(speed_cap_.error());
   return {};
 }
 
@@ -86,7 +92,11 @@ Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
              "make it {}: where they are right, speeds and ways are {} times what is asked for",
              plain_number(*units_->turn(), 12), plain_number(*other, 12),
              number_text(*units_->turn() / *other))});
-  if (speed_cap_ && options_.speed_limit.empty() && supposed_turn_)
+  if (units_->is_unproven(objects::kTargetVelocity))
+    items->push_back({PreflightItem::Weight::caution, "units",
+                      "nothing states the unit of speeds (60A9h, the drive's data): plain numbers go to the "
+                      "drive as they are, and no limit in rpm holds"});
+  else if (speed_cap_ && options_.speed_limit.empty() && supposed_turn_)
     items->push_back({PreflightItem::Weight::caution, "speed", unconverted_limit()});
   return items;
 }
@@ -95,11 +105,14 @@ void Motion::set_standstill(double speed) {
   const bool rpm = units_->unit(objects::kVelocityActual) == "rpm";
   standstill_ = std::max(rpm ? kNoiseRpm : 0, std::abs(speed) * kNoisePart);
   if (guard_) guard_->set_standstill(standstill_);
+  monitor_->set_noise(standstill_);
 }
 
 bool Motion::stands_still(const MotionSample& sample) const {
+  if (sample.is_cut_short) return false;
   const auto speed = sample[Signal::velocity];
-  return !speed || std::abs(*speed) <= standstill_;
+  const auto by_position = monitor_->least_by_position();
+  return (!speed || std::abs(*speed) <= standstill_) && (!by_position || *by_position <= standstill_);
 }
 
 bool Motion::supervise_speed(double limit) {
@@ -144,13 +157,6 @@ Result<void> Motion::add_ramps(double speed, std::initializer_list<ObjectAddress
   return {};
 }
 
-std::optional<double> Motion::rate() const {
-  const auto of_way = units_->unit(objects::kPositionActual);
-  const auto of_speed = units_->unit(objects::kTargetVelocity);
-  if (of_speed == "rpm" && of_way == "deg") return kDegreesASecond;
-  return of_speed == of_way + "/s" ? std::optional(1.) : std::nullopt;
-}
-
 std::optional<Duration> Motion::duration(double way, double speed) const {
   const auto one = rate();
   if (!one || speed == 0) return std::nullopt;
@@ -179,6 +185,7 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
   session::Rehearsal unused;
   if (const auto ready = make_ready(*guard_, mode, settings, kept_target, unused); !ready) return ready;
   (void)session_->take_events();  // What was told before is no news of this motion.
+  monitor_->expect_mode(mode);
   auto enabled = guard_->enable();
   monitor_->on_written();
   return enabled;
@@ -240,48 +247,19 @@ Result<void> Motion::command(std::uint16_t controlword) {
   return done;
 }
 
-/// What a motion keeps grows with its time.
-Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest) {
-  try {
-    return supervise(done, longest);
-  } catch (const std::bad_alloc&) {
-    return fail(
-        error(Errc::bug, "out of memory: the motion ends", "use a shorter motion, or free some memory"));
-  }
-}
-
-Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSample&)>& done,
-                               Duration longest) {
-  const auto end = session_->now() + longest;
-  for (;;) {
-    const auto sample = monitor_->sample();
-    if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
-    if (!sample) return fail(sample.error());
-    if (const auto fits = check_turn(*sample); !fits) return fail(fits.error());
-    if (options_.unheard && options_.unheard())
-      return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));
-    const auto enough = done(*sample);
-    if (!enough || *enough) return enough;
-    if (session_->now() >= end) return false;
-    if (const auto waited = monitor_->wait_for_next(); !waited) return fail(waited.error());
-  }
-}
-
-Result<void> Motion::wait_for_rest(Duration longest) {
-  const auto rested =
-      watch([this](const MotionSample& sample) -> Result<bool> { return stands_still(sample); }, longest);
-  if (!rested) return fail(rested.error());
-  if (*rested) return {};
-  return fail(error(Errc::negative, "did not come to rest in time at the end of the motion",
-                    "check its deceleration (6084h) and its load"));
-}
-
 MotionReport Motion::finish(Result<void> outcome) {
   MotionReport out;
   out.outcome = std::move(outcome);
   out.watchdog = watchdog_;
   out.begun = guard_ != nullptr;
   if (guard_) out.end = guard_->end();
+  const bool fault =
+      out.end.state == drive::DriveState::fault || out.end.state == drive::DriveState::fault_reaction_active;
+  if (out.outcome && out.begun && fault)
+    out.outcome = fail(
+        error(Errc::negative,
+              fmt::format("went to fault while it was stopped (statusword 0x{:04X})", out.end.statusword),
+              "`fault show` shows the fault"));
   try {
     out.samples = monitor_->samples();
     out.series = monitor_->series();

@@ -100,8 +100,8 @@ class Motion {
   /// none is known; Errc::refused when the user's is above the drive's own maximum.
   Result<double> speed_cap() const { return speed_cap_; }
   /// The greatest speed that the drive allows (607Fh, 6080h), in the unit of 60FFh; empty where it does not
-  /// tell it in that unit.
-  std::optional<double> fastest() const;
+  /// tell it in that unit. Errors of an answer that was lost.
+  Result<std::optional<double>> fastest() const;
   /// Whether nothing tells what a speed is in rpm, not even at worst: then every speed has to be said, and
   /// --limit as well.
   bool is_speed_unproven() const { return speed_unproven_; }
@@ -122,7 +122,7 @@ class Motion {
   /// 6072h.
   Result<double> torque_cap() const;
   /// What one of speed (60FFh) goes in a second, in the unit of 6064h; empty when their units do not fit.
-  std::optional<double> rate() const;
+  std::optional<double> rate() const { return units_->rate(objects::kTargetVelocity); }
   /// Time that the way takes at the speed with its ramps; empty when their units do not fit.
   std::optional<Duration> duration(double way, double speed) const;
   /// What a motor that turns at this speed still shows at rest is found from it.
@@ -169,7 +169,7 @@ class Motion {
   /// A limit that the user gave: more than 0, because it holds either way.
   Result<double> parse_limit(ObjectAddress object, std::string_view option, const std::string& text) const;
   /// What an object of the drive says in the unit of `as`, when it can be said so and is above 0.
-  std::optional<double> read_as(ObjectAddress as, ObjectAddress object) const;
+  Result<std::optional<double>> read_as(ObjectAddress as, ObjectAddress object) const;
 
   session::Session* session_;
   const drive::Profile* profile_;

@@ -43,13 +43,18 @@ void MotionGuard::say(std::uint8_t controlword) noexcept {
 
 void MotionGuard::hear_write(ObjectAddress object) {
   if (end_) return;
-  const bool ours =
-      object == objects::kControlword ||
-      std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
-  if (ours) foreign_.insert(object);
+  if (object == objects::kControlword || own_.count(object) > 0) foreign_.insert(object);
+}
+
+std::optional<ObjectAddress> MotionGuard::foreign_command() const {
+  for (const auto object : {objects::kControlword, objects::kModeOfOperation, objects::kTargetVelocity,
+                            objects::kTargetPosition, objects::kTargetTorque})
+    if (foreign_.count(object) > 0) return object;
+  return std::nullopt;
 }
 
 Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
+  own_.insert(object);
   const auto before = session_->upload(node_, object);
   if (!before) return fail(before.error());
   const auto* rehearsed = rehearsal_ != nullptr ? rehearsal_->held(object) : nullptr;
@@ -72,6 +77,7 @@ Result<void> MotionGuard::change_mode(std::int8_t mode) {
   const auto before = session_->upload(node_, objects::kModeOfOperation);
   if (!before) return fail(before.error());
   changed_.push_back({objects::kModeOfOperation, *before});
+  own_.insert(objects::kModeOfOperation);
   if (rehearsal_ != nullptr) {
     const auto planned = mode_write(units_->profile(), node_, mode);
     return write(planned.object, *planned.data);

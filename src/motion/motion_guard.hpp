@@ -59,6 +59,9 @@ class MotionGuard {
   /// masters would command it.
   Result<void> enable();
 
+  /// Of what decides about the motion (6040h, 6060h and the targets), what another master has written since.
+  std::optional<ObjectAddress> foreign_command() const;
+
   /// The speed below which the motor counts as standing still, in the unit of 606Ch.
   void set_standstill(double speed) { standstill_ = speed; }
 
@@ -83,6 +86,7 @@ class MotionGuard {
   void bring_down();
   void put_back();
   void put_back(const Changed& changed);
+  void keep_mode();
   void hear_write(ObjectAddress object);
   Result<void> send_life_sign(const session::LifeSign& sign);
   /// Sends a controlword without waiting for anything and without memory.
@@ -112,7 +116,8 @@ class MotionGuard {
   std::optional<double> standstill_;
   std::optional<MotionEnd> end_;
   MotionEnd result_;
-  std::set<ObjectAddress> foreign_;  ///< Of those that it changes, what another master wrote since.
+  std::set<ObjectAddress> own_;      ///< What it has set, or found as it was to be set.
+  std::set<ObjectAddress> foreign_;  ///< Of those, what another master wrote since.
   session::ForeignWrites foreign_writes_;
   session::Rehearsal* rehearsal_ = nullptr;
 };

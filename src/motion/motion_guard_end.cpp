@@ -127,6 +127,14 @@ void MotionGuard::put_back() {
   changed_.clear();
 }
 
+/// 6060h is 0 after power-on because no mode was chosen yet, and some drives never go back to 0: nothing is
+/// lost.
+void MotionGuard::keep_mode() {
+  result_.notes.emplace_back(
+      "no mode was chosen before (6060h was 0), and the drive does not accept 0: it keeps the mode of this "
+      "motion");
+}
+
 /// What the drive acknowledges is read as well: it may not have done it, and another master may use it.
 void MotionGuard::put_back(const Changed& changed) {
   session::LinkWait link(*session_,
@@ -136,12 +144,15 @@ void MotionGuard::put_back(const Changed& changed) {
     done = session_->download(node_, changed.object, changed.before);
   const auto what =
       fmt::format("object {} could not be restored to {}", to_string(changed.object), to_hex(changed.before));
+  const bool none_chosen = changed.object == objects::kModeOfOperation && load_le(changed.before) == 0;
+  if (none_chosen && !done && done.error().code == Errc::sdo_abort) return keep_mode();
   if (!done) {
     lost_ = lost_ || is_lost(done.error());
     return note(what, done.error());
   }
   const auto now_holds = session_->upload(node_, changed.object);
   if (now_holds && *now_holds == changed.before) return;
+  if (now_holds && none_chosen) return keep_mode();
   if (!now_holds && now_holds.error().code == Errc::sdo_abort)
     return;  // The drive has taken it, and tells no more.
   if (!now_holds)

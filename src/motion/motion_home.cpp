@@ -13,6 +13,8 @@ namespace servoctl::motion {
 namespace {
 
 constexpr Duration kStart = std::chrono::seconds(1);
+/// A turn of direction takes less.
+constexpr Duration kAtRest = std::chrono::milliseconds(1500);
 constexpr double kNearHomeDegrees = 1;
 constexpr double kNearHomeCounts = 100;
 /// CiA 402-2, 6098h: no homing operation.
@@ -37,7 +39,7 @@ class Homing {
     if (!before) return fail(before.error());
     // "Homed" may stand there from an earlier run: it counts when it was seen to go.
     const auto word_before = motion_->monitor().samples().back().statusword;
-    begun_ = !is_done(word_before);
+    seen_low_ = begun_ = !is_done(word_before);
     stale_error_ = is_error(word_before);
     started_at_ = motion_->session().now();
     for (const auto word : motion_->rules().start_homing)
@@ -51,6 +53,13 @@ class Homing {
         Errc::negative,
         fmt::format("no home found in {} s", std::chrono::duration<double>(plan_->longest).count()),
         "check that the switch and the index pulse come; `--within` allows more time"));
+  }
+
+  MotionReport judged(MotionReport report) const {
+    if (by_standstill_ && report.outcome)
+      report.unchecked.emplace_back(
+          "\"homing attained\" was set all the time: that the motor moved and stopped is all that was seen");
+    return report;
   }
 
  private:
@@ -68,8 +77,19 @@ class Homing {
           Errc::negative, fmt::format("ended homing with an error (statusword 0x{:04X})", sample.statusword),
           "switch stuck, wrong method or a limit in the way; see also `fault show`"));
     const bool done = is_done(sample.statusword);
-    begun_ = begun_ || !done;
-    if (done && begun_) return motion_->stands_still(sample);
+    seen_low_ = seen_low_ || !done;
+    moved_ = moved_ || (!sample.is_cut_short && !motion_->stands_still(sample));
+    if (!motion_->stands_still(sample))
+      still_since_.reset();
+    else if (!still_since_)
+      still_since_ = sample.time;
+    if (done && seen_low_) return still_since_.has_value();
+    // Some drives leave "attained" set from before: what has moved has begun, and has ended where it stays.
+    if (done && moved_ && still_since_ && sample.time - *still_since_ >= kAtRest) {
+      by_standstill_ = true;
+      return true;
+    }
+    begun_ = seen_low_ || moved_;
     if (begun_ || sample.time - started_at_ < kStart) return false;
     if (takes_present_position(*plan_) && motion_->stands_still(sample) && is_at_offset(sample)) return true;
     return fail(motion_->error(
@@ -85,6 +105,7 @@ class Homing {
         units.unit(objects::kHomeOffset) != units.unit(objects::kPositionActual))
       return true;
     const auto answer = motion_->session().upload(motion_->node(), objects::kHomeOffset);
+    if (!answer && answer.error().code != Errc::sdo_abort) return false;
     const auto offset = answer ? units.physical(objects::kHomeOffset, *answer) : std::nullopt;
     const double near = units.unit(objects::kPositionActual) == "deg" ? kNearHomeDegrees : kNearHomeCounts;
     return !offset || std::abs(std::abs(*position) - std::abs(offset->value)) <= near;
@@ -92,7 +113,11 @@ class Homing {
 
   Motion* motion_;
   const MotionPlan* plan_;
+  bool seen_low_ = false;  ///< "Attained" was not set.
+  bool moved_ = false;
   bool begun_ = false;
+  bool by_standstill_ = false;
+  std::optional<TimePoint> still_since_;
   bool stale_error_ = false;
   TimePoint started_at_{};
 };
@@ -212,13 +237,15 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
     plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
   motion.set_standstill(plan.speed);
   motion.supervise_overspeed(plan.speed);
-  if (const auto rate = motion.rate()) motion.monitor().expect_new_zero(*rate);
+  motion.monitor().expect_new_zero();
   return plan;
 }
 
 MotionReport run_home(Motion& motion, const Home&, const MotionPlan& plan) {
-  auto begun = motion.begin(plan.mode, plan.settings);
-  return motion.finish(begun ? Homing(motion, plan).run() : begun);
+  if (auto begun = motion.begin(plan.mode, plan.settings); !begun) return motion.finish(std::move(begun));
+  Homing homing(motion, plan);
+  auto done = homing.run();
+  return homing.judged(motion.finish(std::move(done)));
 }
 
 }  // namespace servoctl::motion

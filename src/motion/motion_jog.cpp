@@ -14,6 +14,9 @@ namespace {
 constexpr Duration kJogSettling = std::chrono::milliseconds(1500);
 /// So long after the command a motor that obeys turns, and the right way round.
 constexpr Duration kMostDelay = std::chrono::milliseconds(1500);
+/// Of the commanded speed, once that should be reached.
+constexpr double kLeastPart = 0.5;
+constexpr double kMostTurns = 1e6;
 constexpr Duration kForEver = std::chrono::hours(24);
 
 class Jogging {
@@ -22,6 +25,7 @@ class Jogging {
       : motion_(&motion), jog_(&jog), plan_(&plan) {}
 
   Result<void> run() {
+    const auto began_at = motion_->session().now();
     if (!jog_->keys)
       if (const auto started = turn(1); !started) return started;
     const auto told_at = motion_->session().now();
@@ -34,8 +38,15 @@ class Jogging {
                                  "is it blocked, or is its speed limited?"));
     const auto stopped_at = motion_->session().now();
     stretch_.reset();
-    auto rested = rest();
-    if (rested) judge(told_at, stopped_at);
+    const auto stopped = stop();
+    const auto let_go_at = motion_->session().now();
+    auto rested = stopped ? motion_->wait_for_rest(kJogSettling) : stopped;
+    if (!rested) return rested;
+    judge(told_at, stopped_at);
+    if (jog_->length) {
+      judgement_.judge_time(*jog_->length, began_at, let_go_at);
+      judgement_.judge_way_in_time(*motion_, *plan_, *jog_->length);
+    }
     return rested;
   }
   MotionJudgement& judgement() { return judgement_; }
@@ -102,7 +113,8 @@ class Jogging {
   }
 
   Result<void> check_following(const MotionSample& sample) {
-    const auto speed = sample[Signal::velocity];
+    auto speed = sample[Signal::velocity];
+    if (!speed && !sample.is_cut_short) speed = motion_->monitor().by_position();
     if (direction_ == 0 || !speed) return {};
     const double wanted = plan_->value * direction_;
     const bool wrong = *speed * wanted < 0 && std::abs(*speed) > std::abs(wanted) * kTurningPart;
@@ -118,14 +130,16 @@ class Jogging {
     if (settled && std::abs(*speed) < std::abs(wanted) * kTurningPart)
       return fail(motion_->error(Errc::negative, "does not turn although commanded to",
                                  "is it blocked, is the brake on, or does a limit hold it back?"));
+    // Ramps of the user's own take their time.
+    if (settled && !motion_->has_own_ramps() && std::abs(*speed) < std::abs(wanted) * kLeastPart)
+      return fail(motion_->error(Errc::negative,
+                                 fmt::format("turns at {} {}, less than half of the {} that were commanded",
+                                             number_text(*speed), plan_->unit, number_text(wanted)),
+                                 "is it blocked, or is its speed limited (607Fh, 6080h)?"));
     return {};
   }
 
-  Result<void> rest() {
-    if (direction_ != 0)
-      if (const auto told = turn(0); !told) return told;
-    return motion_->wait_for_rest(kJogSettling);
-  }
+  Result<void> stop() { return direction_ == 0 ? Result<void>() : turn(0); }
 
   Motion* motion_;
   const Jog* jog_;
@@ -145,6 +159,8 @@ class Jogging {
 
 /// The way of so many turns in the unit of the position.
 Result<double> way_of(const Motion& motion, double turns) {
+  if (!(std::abs(turns) <= kMostTurns))
+    return fail(Errc::usage, fmt::format("--turns: more than {} turns are no jog", number_text(kMostTurns)));
   if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegreesATurn;
   return fail(motion.error(Errc::usage, "does not report its counts per motor revolution",
                            "add --turn (6064h increments per revolution), or use --for TIME"));

@@ -25,6 +25,13 @@ constexpr std::size_t kSamples = 2;
 /// A ramp of unknown length is over when the speed changes by no more than this part of it.
 constexpr double kSteady = 0.03;
 
+/// A motion may take so much longer than it was to take, and go so much farther.
+constexpr double kTimeTolerance = 0.1;
+constexpr double kTimeSlack = 0.3;  ///< Seconds.
+constexpr double kLeastPart = 0.5;
+
+double in_seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
+
 /// The values of a signal at the end of the time in which the motor was told to move.
 std::vector<double> values_at_end(const std::vector<MotionSample>& samples, Signal signal, TimePoint told_at,
                                   TimePoint stopped_at) {
@@ -74,20 +81,54 @@ void MotionJudgement::judge_speed(const Motion& motion, const MotionPlan& plan, 
                                     number_text(plan.value), plan.unit));
 }
 
+void MotionJudgement::judge_time(Duration asked, TimePoint told_at, TimePoint stopped_at) {
+  const double took = in_seconds(stopped_at - told_at);
+  const double wanted = in_seconds(asked);
+  if (took <= wanted * (1 + kTimeTolerance) + kTimeSlack) return;
+  differences.push_back(
+      fmt::format("it took {} s; {} s were commanded", number_text(took), number_text(wanted)));
+}
+
+void MotionJudgement::judge_way_in_time(const Motion& motion, const MotionPlan& plan, Duration asked) {
+  const auto way = motion.monitor().way();
+  if (!way) {
+    unchecked.push_back("the way was not checked: the drive does not report its position");
+    return;
+  }
+  const auto unit = motion.units().unit(objects::kPositionActual);
+  const auto rate = motion.units().rate(objects::kTargetVelocity);
+  if (!rate) {
+    if (*way == 0) differences.push_back("its position (6064h) did not change");
+    return;
+  }
+  const double speed = plan.value * *rate;
+  const double seconds = in_seconds(asked);
+  const bool ramp_known =
+      !motion.has_own_ramps() &&
+      std::any_of(plan.settings.begin(), plan.settings.end(),
+                  [](const MotionSetting& one) { return one.first == objects::kProfileAcceleration; });
+  const double part = ramp_known ? kLeastPart * std::min(1.0, seconds / Motion::kRampSeconds) : 0;
+  const double least = std::abs(speed) * seconds * part;
+  const double most = std::abs(speed) * (seconds * (1 + kTimeTolerance) + kTimeSlack);
+  const double gone = *way * (speed < 0 ? -1 : 1);
+  if (gone > 0 && gone >= least && gone <= most) return;
+  differences.push_back(fmt::format("it moved {} {} in {} s; about {} {} were commanded", number_text(*way),
+                                    unit, number_text(seconds), number_text(speed * seconds), unit));
+}
+
 void MotionJudgement::judge_way(const Motion& motion, const MotionPlan& plan) {
+  const auto way = motion.monitor().way();
+  if (!way) return;
   const auto& samples = motion.monitor().samples();
-  std::vector<double> places;
-  for (const auto& sample : samples)
-    if (const auto place = sample[Signal::position]) places.push_back(*place);
-  if (places.empty()) return;
   double step = 0;
-  for (std::size_t i = 1; i < places.size(); ++i) step = std::max(step, std::abs(places[i] - places[i - 1]));
-  const double way = places.back() - places.front();
+  for (std::size_t i = 1; i < samples.size(); ++i)
+    if (samples[i][Signal::position] && samples[i - 1][Signal::position])
+      step = std::max(step, std::abs(*samples[i][Signal::position] - *samples[i - 1][Signal::position]));
   const double asked = std::copysign(plan.way, plan.value);
-  if (std::abs(way - asked) <= plan.way * kWayTolerance + 2 * step) return;
+  if (std::abs(*way - asked) <= plan.way * kWayTolerance + 2 * step) return;
   const auto unit = motion.units().unit(objects::kPositionActual);
   differences.push_back(
-      fmt::format("it moved {} {}; {} {} was commanded", number_text(way), unit, number_text(asked), unit));
+      fmt::format("it moved {} {}; {} {} was commanded", number_text(*way), unit, number_text(asked), unit));
 }
 
 void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan, double near) {

@@ -29,12 +29,8 @@ constexpr int kMostSpeeds = 20;
 
 class Learning {
  public:
-  Learning(Motion& motion, const Learn& learn, double first)
-      : motion_(&motion),
-        learn_(&learn),
-        first_(first),
-        fastest_(motion.fastest()),
-        monitor_(motion, learn) {}
+  Learning(Motion& motion, const Learn& learn, double first, std::optional<double> fastest)
+      : motion_(&motion), learn_(&learn), first_(first), fastest_(fastest), monitor_(motion, learn) {}
 
   Result<void> run() {
     if (const auto found = find_speed(); !found) return found;
@@ -244,11 +240,16 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
 
 LearnReport run_learn(Motion& motion, const Learn& learn, const MotionPlan& plan) {
   LearnReport out;
+  const auto fastest = motion.fastest();
+  if (!fastest) {
+    out.motion = motion.finish(fail(fastest.error()));
+    return out;
+  }
   if (auto begun = motion.begin(plan.mode, plan.settings); !begun) {
     out.motion = motion.finish(std::move(begun));
     return out;
   }
-  Learning learning(motion, learn, plan.value);
+  Learning learning(motion, learn, plan.value, *fastest);
   const auto turned = learning.run();
   Result<void> outcome = turned;
   if (turned) {

@@ -20,6 +20,8 @@ constexpr int kOddLooks = 2;
 /// A motor turns too fast that the monitor shows so much faster than it was told to turn.
 constexpr double kTooFastFactor = 1.5;
 constexpr double kTooFastRpm = 60;
+/// No servo motor turns faster.
+constexpr double kMostRpm = 100'000;
 /// A torque in per cent is one of the rated torque.
 constexpr double kRatedTorque = 100;
 
@@ -69,14 +71,18 @@ Result<double> Motion::parse_limit(ObjectAddress object, std::string_view option
     error.message = fmt::format("{}: {}", option, error.message);
     return fail(std::move(error));
   }
+  if (object == objects::kTargetVelocity && value->unit == "rpm" && value->value > kMostRpm)
+    return fail(Errc::usage, fmt::format("{}: '{}' is more than any motor turns", option, text),
+                fmt::format("the greatest limit is {} rpm", number_text(kMostRpm)));
   if (value->value > 0) return value->value;
   return fail(Errc::usage, fmt::format("{}: '{}' is not a limit", option, text),
               "a limit must be above 0, without a sign");
 }
 
-std::optional<double> Motion::read_as(ObjectAddress as, ObjectAddress object) const {
-  if (!units_->has(object) || units_->unit(object) != units_->unit(as)) return std::nullopt;
+Result<std::optional<double>> Motion::read_as(ObjectAddress as, ObjectAddress object) const {
+  if (!units_->has(object) || units_->unit(object) != units_->unit(as)) return std::optional<double>();
   const auto answer = session_->upload(node_, object);
+  if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
   const auto value = answer ? units_->physical(object, *answer) : std::nullopt;
   return value && value->value > 0 ? std::optional(value->value) : std::nullopt;
 }
@@ -156,17 +162,21 @@ Error Motion::quarrel(double shown, double speed) const {
           name);
 }
 
-std::optional<double> Motion::fastest() const {
+Result<std::optional<double>> Motion::fastest() const {
   std::optional<double> most;
-  for (const auto object : {objects::kMaxProfileVelocity, objects::kMaxMotorSpeed})
-    if (const auto speed = read_as(objects::kTargetVelocity, object))
-      most = std::min(*speed, most.value_or(*speed));
+  for (const auto object : {objects::kMaxProfileVelocity, objects::kMaxMotorSpeed}) {
+    const auto speed = read_as(objects::kTargetVelocity, object);
+    if (!speed) return speed;
+    if (*speed) most = std::min(**speed, most.value_or(**speed));
+  }
   return most;
 }
 
 Result<double> Motion::find_speed_cap() {
   const auto unit = units_->unit(objects::kTargetVelocity);
-  auto most = fastest();
+  const auto allowed = fastest();
+  if (!allowed) return fail(allowed.error());
+  auto most = *allowed;
   if (unit != "rpm") {
     supposed_turn_ = supposed_turn();
     speed_unproven_ = !supposed_turn_;
@@ -183,9 +193,9 @@ Result<double> Motion::find_speed_cap() {
     return asked;
   }
   const auto rated = units_->object(rules().rated_speed);
-  if (rated)
-    if (const auto speed = read_as(objects::kTargetVelocity, *rated))
-      most = std::min(*speed, most.value_or(*speed));
+  const auto nominal = rated ? read_as(objects::kTargetVelocity, *rated) : std::optional<double>();
+  if (!nominal) return fail(nominal.error());
+  if (*nominal) most = std::min(**nominal, most.value_or(**nominal));
   const auto rule = cap_of_cautions(objects::kTargetVelocity, &drive::Caution::speed);
   if (!rule) return fail(rule.error());
   if (*rule) most = std::min(**rule, most.value_or(**rule));
@@ -203,8 +213,9 @@ Result<void> Motion::check_speed(double speed) const {
   const auto unit = units_->unit(objects::kTargetVelocity);
   // What the drive itself does not allow, no option raises.
   const auto most = fastest();
-  const bool beyond = most && std::abs(speed) > *most * kUnitRounding;
-  const auto numbers = told_apart(std::abs(speed), beyond ? *most : *speed_cap_);
+  if (!most) return fail(most.error());
+  const bool beyond = *most && std::abs(speed) > **most * kUnitRounding;
+  const auto numbers = told_apart(std::abs(speed), beyond ? **most : *speed_cap_);
   if (beyond)
     return fail(error(Errc::refused,
                       fmt::format("the speed of {} {} is above what the drive allows, {} {}", numbers.first,
@@ -223,7 +234,9 @@ Result<void> Motion::check_speed(double speed) const {
 
 Result<double> Motion::torque_cap() const {
   const auto unit = units_->unit(objects::kTargetTorque);
-  const auto most = read_as(objects::kTargetTorque, objects::kMaxTorque);
+  const auto allowed = read_as(objects::kTargetTorque, objects::kMaxTorque);
+  if (!allowed) return fail(allowed.error());
+  const auto& most = *allowed;
   if (!options_.max_torque.empty()) {
     const auto asked = parse_limit(objects::kTargetTorque, "--max-torque", options_.max_torque);
     if (asked && most && *asked > *most * kUnitRounding) {
@@ -239,9 +252,11 @@ Result<double> Motion::torque_cap() const {
   if (!rule) return fail(rule.error());
   std::optional<double> rated = *rule;
   if (unit == "%") rated = std::min(kRatedTorque, rated.value_or(kRatedTorque));
-  if (const auto object = units_->object(rules().rated_torque))
-    if (const auto told = read_as(objects::kTargetTorque, *object))
-      rated = std::min(*told, rated.value_or(*told));
+  if (const auto object = units_->object(rules().rated_torque)) {
+    const auto nominal = read_as(objects::kTargetTorque, *object);
+    if (!nominal) return fail(nominal.error());
+    if (*nominal) rated = std::min(**nominal, rated.value_or(**nominal));
+  }
   if (rated) return std::min(*rated, most.value_or(*rated));
   return fail(Errc::usage, "a safe torque cannot be derived from this drive",
               fmt::format("add --max-torque TORQUE in {}", unit.empty() ? "the drive's own unit" : unit));

@@ -9,6 +9,7 @@
 
 #include "base/series.hpp"
 #include "motion/motion_units.hpp"
+#include "motion/speed_comparison.hpp"
 #include "session/network.hpp"
 #include "session/process_values.hpp"
 #include "session/session.hpp"
@@ -29,7 +30,9 @@ inline constexpr Duration kMovingPatience = std::chrono::milliseconds(200);
 /// One look at a moving drive. Numbers are in the units of MotionUnits::physical(); one that the drive does
 /// not tell is missing.
 struct MotionSample {
-  TimePoint time;
+  TimePoint time;             ///< When the look ended;
+  TimePoint begun;            ///< it began then.
+  bool is_cut_short = false;  ///< The time was over before all was read.
   std::uint16_t statusword = 0;
   std::array<std::optional<double>, kSignals> values;
   std::optional<double> operator[](Signal signal) const { return values[static_cast<std::size_t>(signal)]; }
@@ -48,6 +51,8 @@ class MotionMonitor {
  public:
   /// Time between two looks; a look takes longer on a slow bus.
   static constexpr Duration kPeriod = std::chrono::milliseconds(20);
+  /// A motor that nobody has looked at for so long is stopped: this process stood still, or the link is slow.
+  static constexpr Duration kLongestGap = std::chrono::seconds(1);
 
   MotionMonitor(session::Session& session, const MotionUnits& units, std::uint8_t node);
 
@@ -60,16 +65,27 @@ class MotionMonitor {
   /// How many values TPDOs have brought.
   std::size_t by_pdo() const { return by_pdo_; }
 
-  /// Takes one sample, of values that TPDOs brought in the last period, and reads the others; then the drive
-  /// must be "operation enabled", within its limits, and silent about errors. Errc::timeout when it does not
-  /// answer, Errc::negative with the reason to stop otherwise.
-  Result<MotionSample> sample();
+  /// Takes one sample, of values that TPDOs brought in the last period, and reads the others, as far as that
+  /// is done by `end`; then the drive must be "operation enabled", in its mode, within its limits, and silent
+  /// about errors; the last look must not be too long ago, and 6064h over time must fit 606Ch. Errc::timeout
+  /// when it does not answer, Errc::negative with the reason to stop otherwise.
+  Result<MotionSample> sample(TimePoint end);
   /// Lets the rest of the period pass.
   Result<void> wait_for_next();
 
-  /// The position may jump because the drive gives it a new zero: what one of speed goes in a second, in the
-  /// unit of the position, tells a jump from a way. Jumps are no travel.
-  void expect_new_zero(double rate) { rate_ = rate; }
+  /// The position may jump because the drive gives it a new zero: its speed tells a jump from a way. Jumps
+  /// are no travel.
+  void expect_new_zero() { may_jump_ = true; }
+  /// 6061h must show this mode, where the drive has it.
+  void expect_mode(std::int8_t mode) { mode_ = mode; }
+  /// A motor at rest may show this speed, in the unit of 606Ch.
+  void set_noise(double speed) { speeds_.set_noise(speed); }
+  /// As SpeedComparison.
+  std::optional<double> least_by_position() const { return speeds_.least_by_position(); }
+  std::optional<double> by_position() const { return speeds_.by_position(); }
+  /// How far the position has gone since the first sample, in its unit, whatever its zero was meanwhile and
+  /// wherever 32 bits began anew; empty where the drive does not tell it.
+  std::optional<double> way() const;
 
   const std::vector<MotionSample>& samples() const { return samples_; }
   /// What the node told meanwhile.
@@ -79,9 +95,16 @@ class MotionMonitor {
 
  private:
   std::optional<Series> of_load(const Series& motor) const;
-  void follow_zero(const MotionSample& sample);
-  std::vector<Result<Bytes>> look(std::span<const ObjectAddress> objects);
+  /// Whether it was a new zero.
+  bool follow_zero(const MotionSample& sample);
+  void follow(MotionSample& sample);
+  bool looks_at_mode() const;
+  /// Empty bytes for those that were not asked for because the time was over.
+  std::vector<Result<Bytes>> look(std::span<const ObjectAddress> objects, TimePoint end);
   void tell_end_of_tpdos();
+  Result<void> check_gap(const MotionSample& sample) const;
+  Result<void> check_mode(const Result<Bytes>& answer);
+  Result<void> check_speeds() const;
   Result<void> check_events();
   Result<void> check_state(const MotionSample& sample) const;
   Result<void> check_limits(const MotionSample& sample) const;
@@ -98,7 +121,16 @@ class MotionMonitor {
   std::vector<MotionSample> samples_;
   std::vector<session::NodeEvent> events_;
   std::optional<double> begin_;  ///< Position of the first sample, seen from the present zero.
-  std::optional<double> rate_;   ///< Where the zero may change.
+  std::optional<double> last_;   ///< Position of the last one, as the drive told it;
+  double place_ = 0;             ///< the same without the jumps where 32 bits begin anew.
+  double way_by_speed_ = 0;      ///< Since the first sample, by 606Ch.
+  std::optional<double> rate_;   ///< Of 606Ch, as MotionUnits::rate().
+  double span_ = 0;              ///< After which the position begins anew; 0: never.
+  bool may_jump_ = false;        ///< The zero may change.
+  int zeros_ = 0;                ///< How often it did.
+  std::optional<std::int8_t> mode_;
+  TimePoint mode_looked_at_{};
+  SpeedComparison speeds_;
 };
 
 }  // namespace servoctl::motion

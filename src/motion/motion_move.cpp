@@ -136,10 +136,26 @@ class Moving {
   MotionJudgement judgement_;
 };
 
+bool is_float(const drive::Meaning& what) {
+  return what.encoding != od::Encoding::plain || od::is_real(what.type);
+}
+
+/// The farther away, the greater are the steps of a number of 32 bits; where they are greater than what
+/// counts as there, no target is one.
+Result<void> check_precision(const MotionUnits& units, const MotionPlan& plan) {
+  constexpr double kStepOfFloat = 1.0 / (1U << 23U);
+  const double step = std::abs(plan.value) * kStepOfFloat;
+  if (!is_float(units.meaning(objects::kTargetPosition)) || step <= near(plan)) return {};
+  return fail(Errc::usage,
+              fmt::format("{} is too far: a number of 32 bits has steps of {} there",
+                          units.words(plan.value, plan.unit), units.words(step, plan.unit)),
+              "choose a target nearer to zero; `home` sets a new one");
+}
+
 /// What one count of 607Ah is worth in the unit people think in; numbers of 32 bits have steps that grow.
 double step_of(const MotionUnits& units, double place) {
   const auto what = units.meaning(objects::kTargetPosition);
-  if (what.encoding != od::Encoding::plain) return std::max(1e-3, std::abs(place) * 1e-6);
+  if (is_float(what)) return std::max(1e-3, std::abs(place) * 1e-6);
   const auto one = od::encode(what.type, od::Value(std::int64_t{1}));
   const auto step = one ? units.physical(objects::kTargetPosition, *one) : std::nullopt;
   return step ? std::abs(step->value) : 0;
@@ -157,6 +173,7 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   plan.unit = asked->unit;
   plan.way = plan.value - here.value;
   plan.from = here.value;
+  if (const auto precise = check_precision(units, plan); !precise) return precise;
   const auto data = units.bytes(objects::kTargetPosition, plan.value);
   const auto said = data ? units.physical(objects::kTargetPosition, *data) : std::nullopt;
   const double step = step_of(units, plan.value);

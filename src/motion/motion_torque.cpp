@@ -108,6 +108,7 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
 
 MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& plan) {
   auto done = motion.begin(plan.mode, plan.settings, plan.kept_target);
+  const auto began_at = motion.session().now();
   if (done) done = motion.write(objects::kTargetTorque, plan.command);
   MotionJudgement judgement;
   if (done) {
@@ -117,6 +118,7 @@ MotionReport run_torque(Motion& motion, const Torque& torque, const MotionPlan& 
         motion.watch([](const MotionSample&) -> Result<bool> { return false; }, torque.length);
     if (!watched) done = fail(watched.error());
     judgement.judge_torque(motion, plan, told_at, motion.session().now());
+    judgement.judge_time(torque.length, began_at, motion.session().now());
   }
   return judgement.into(motion.finish(std::move(done)));
 }

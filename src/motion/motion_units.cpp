@@ -6,6 +6,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/assumed_unit.hpp"
 #include "drive/load_unit.hpp"
 #include "drive/unit.hpp"
 #include "session/measure.hpp"
@@ -22,6 +23,7 @@ Physical physical_of(const drive::Meaning& what, const od::Value& value) {
 
 /// Whole numbers beyond it have no double of their own.
 constexpr double kMostSteps = 9.0e15;
+constexpr double kDegreesASecond = 6;  ///< Of 1 rpm.
 /// In place of what only the drive tells: which units there are does not depend on it.
 constexpr double kSomeMeasure = 1000;
 
@@ -32,6 +34,20 @@ constexpr std::string_view kMotionUnits[] = {"deg",   "rev",   "rad",   "rpm",  
 
 bool converts(const drive::Meaning& what, std::string_view unit) {
   return drive::conversion(unit, what.unit) || (what.bridge && drive::conversion(unit, what.bridge->unit));
+}
+
+constexpr std::uint16_t kFeedConstant = 0x6092;
+
+/// A feed constant (6092h) tells how many position units a turn has, whatever they are called.
+bool is_of_feed(const drive::Quotient& way) {
+  const auto objects = way.objects();
+  return std::any_of(objects.begin(), objects.end(), [](auto one) { return one.index == kFeedConstant; });
+}
+
+/// The object of the drive that would name the unit.
+ObjectAddress naming(const drive::Meaning& what) {
+  if (what.unit == "inc") return ObjectAddress{0x60A8, 0};
+  return what.unit == "inc/s" ? ObjectAddress{0x60A9, 0} : ObjectAddress{0x60AA, 0};
 }
 
 /// Nothing turns by it, in whatever unit.
@@ -45,20 +61,25 @@ bool is_zero(std::string_view text) {
 MotionUnits::MotionUnits(session::Session& session, const drive::Profile& profile, std::uint8_t node,
                          std::optional<double> turn, std::optional<double> encoder,
                          std::optional<double> learned, std::optional<drive::LoadUnit> load)
-    : profile_(&profile), node_(node), load_(std::move(load)) {
+    : profile_(&profile),
+      node_(node),
+      own_(std::in_place, session, profile, node),
+      unanswered_(own_->unanswered()),
+      load_(std::move(load)) {
   const session::MeasureQuestion questions[] = {{node, drive::Measure::increments_per_turn, learned},
                                                 {node, drive::Measure::pulses_per_turn},
                                                 {node, drive::Measure::rated_torque}};
-  const auto answers = session::read_measures(session, profile, questions);
+  const auto answers = session::read_measures(session, profile, questions, &unanswered_);
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (!answers[i]) continue;
     measures_[questions[i].measure] = answers[i]->value;
     const bool of_turn = questions[i].measure == drive::Measure::increments_per_turn;
-    // A gear that nobody has set says that a turn is one increment.
-    if (of_turn && turn && !answers[i]->learned && answers[i]->value > 1 && answers[i]->value != *turn)
+    if (of_turn && turn && !answers[i]->learned && answers[i]->value != *turn)
       other_turn_ = answers[i]->value;
-    if (questions[i].measure == drive::Measure::increments_per_turn && !turn) turn_way_ = answers[i]->way;
+    if (of_turn && !turn) turn_way_ = answers[i]->way;
+    if (of_turn && is_of_feed(*answers[i]->way)) own_->prove_position();
   }
+  if (turn) own_->prove_position();
   tell(turn, encoder);
 }
 
@@ -76,11 +97,27 @@ void MotionUnits::tell(std::optional<double> turn, std::optional<double> encoder
 bool MotionUnits::has(ObjectAddress object) const { return profile_->dictionary.find(object) != nullptr; }
 
 drive::Meaning MotionUnits::meaning(ObjectAddress object) const {
-  auto out = drive::meaning(drive::target_at(profile_, object), node_);
+  const auto target = drive::target_at(profile_, object);
+  auto out = drive::meaning(target, node_);
+  if (own_) own_->apply(target, out);
   if (!out.measure) return out;
   const auto known = measures_.find(*out.measure);
   if (known != measures_.end()) out.bridge = drive::bridge(out.unit, object, known->second);
   return out;
+}
+
+bool MotionUnits::is_unproven(ObjectAddress object) const {
+  return own_ && !own_->proves(drive::target_at(profile_, object));
+}
+
+Error MotionUnits::unproven(ObjectAddress object, std::string_view text) const {
+  const auto named_by = naming(drive::meaning(drive::target_at(profile_, object), node_));
+  return make_error(
+      Errc::usage,
+      fmt::format("'{}': the unit of {} is not known: neither the drive's data nor the drive ({}) states it",
+                  text, to_string(object), to_string(named_by)),
+      "write the plain number that the drive takes; its manual gives the unit. A wrong unit can turn the "
+      "motor at its maximum speed");
 }
 
 std::optional<double> MotionUnits::turn() const {
@@ -100,8 +137,12 @@ Error MotionUnits::unusable(ObjectAddress object, std::string_view text, const s
 
 Result<void> MotionUnits::check_unit(const drive::Meaning& what, ObjectAddress object, std::string_view text,
                                      std::string_view motor) const {
-  if (what.unit.empty() || is_zero(trim(motor))) return {};
+  if (is_zero(trim(motor))) return {};
   const auto given = drive::split_unit(trim(motor));
+  if (given && !parse_integer(trim(motor)) && is_unproven(object)) return fail(unproven(object, text));
+  // Without a drive an assumed unit is as good as the plain number.
+  if (what.unit.empty() || (!given && !own_ && drive::is_unit_assumed(drive::target_at(profile_, object))))
+    return {};
   if (given && converts(what, given->unit)) return {};
   std::vector<std::string_view> units;
   const auto of_the_load = of_load(1, unit(object));
@@ -208,6 +249,21 @@ std::string MotionUnits::unit(ObjectAddress object) const {
   return zero ? zero->unit : std::string();
 }
 
+std::optional<double> MotionUnits::rate(ObjectAddress speed) const {
+  const auto of_way = unit(objects::kPositionActual);
+  const auto of_speed = unit(speed);
+  if (of_speed == "rpm" && of_way == "deg") return kDegreesASecond;
+  return !of_way.empty() && of_speed == of_way + "/s" ? std::optional(1.) : std::nullopt;
+}
+
+double MotionUnits::step(ObjectAddress object) const {
+  const auto what = meaning(object);
+  if (!what.type_known || !od::is_integer(what.type) || what.encoding != od::Encoding::plain) return 0;
+  const auto one = od::encode(what.type, od::Value(std::int64_t{1}));
+  const auto step = one ? physical(object, *one) : std::nullopt;
+  return step ? std::abs(step->value) : 0;
+}
+
 std::string MotionUnits::for_motor(std::string_view text, Kind kind) const {
   if (!load_) return std::string(text);
   const auto turned =
@@ -221,7 +277,8 @@ std::optional<Physical> MotionUnits::of_load(double value, std::string_view unit
 }
 
 std::string MotionUnits::words(double value, std::string_view unit) const {
-  auto out = fmt::format("{} {}", number_text(value), unit);
+  auto out = number_text(value);
+  if (!unit.empty()) out += fmt::format(" {}", unit);
   if (const auto load = of_load(value, unit))
     out += fmt::format(" ({} {})", number_text(load->value), load->unit);
   return out;

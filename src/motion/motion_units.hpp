@@ -7,6 +7,7 @@
 #include "drive/load_unit.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/drive_units.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::motion {
@@ -40,6 +41,9 @@ class MotionUnits {
   MotionUnits(const drive::Profile& profile, std::uint8_t node, std::optional<double> turn,
               std::optional<double> encoder, std::optional<drive::LoadUnit> load);
 
+  /// The error of an answer about units, gear or ratings that was lost; what they are is not known then.
+  const std::optional<Error>& unanswered() const { return unanswered_; }
+
   bool has(ObjectAddress object) const;
   drive::Meaning meaning(ObjectAddress object) const;
   /// Whether what a user wrote has a direction: of a load that runs the other way than its motor a way is
@@ -60,6 +64,13 @@ class MotionUnits {
   /// object's limits, and never zero for what is not. Empty when it cannot be said in this object.
   std::optional<Bytes> bytes(ObjectAddress object, double value) const;
   std::string unit(ObjectAddress object) const;
+  /// What one of this speed object goes in a second, in the unit of 6064h; empty when their units do not fit.
+  std::optional<double> rate(ObjectAddress speed) const;
+  /// One count of the object in its unit; 0 for numbers of another kind, whose steps grow.
+  double step(ObjectAddress object) const;
+  /// Whether neither the family's data, nor the drive, nor the user tells the unit of this object: its plain
+  /// numbers go to the drive as they are, and no number with a unit does.
+  bool is_unproven(ObjectAddress object) const;
 
   /// The same in the unit of the load; empty where nobody said what it moves, or the unit is none of motion.
   std::optional<Physical> of_load(double value, std::string_view unit) const;
@@ -85,6 +96,7 @@ class MotionUnits {
   std::string for_motor(std::string_view text, Kind kind) const;
   /// Puts in what was told beside the drive.
   void tell(std::optional<double> turn, std::optional<double> encoder);
+  Error unproven(ObjectAddress object, std::string_view text) const;
   /// A number that is not 0 says its unit where the object has one: the drive's own is not what people
   /// expect, and a motor would turn by it.
   Result<void> check_unit(const drive::Meaning& what, ObjectAddress object, std::string_view text,
@@ -95,6 +107,8 @@ class MotionUnits {
 
   const drive::Profile* profile_;
   std::uint8_t node_;
+  std::optional<session::DriveUnits> own_;  ///< Empty without a drive.
+  std::optional<Error> unanswered_;
   std::map<drive::Measure, double> measures_;
   const drive::Quotient* turn_way_ = nullptr;
   std::optional<double> other_turn_;

@@ -74,9 +74,10 @@ std::string Power::start_command() const {
 }
 
 /// 605Ah decides whether a quick stop can be left upwards.
-bool Power::resumes() {
+Result<bool> Power::resumes() {
   const auto& staying = profile_->rules.quick_stop_stays_enabled;
   const auto option = session_->upload(node_, objects::kQuickStopOption);
+  if (!option && option.error().code != Errc::sdo_abort) return fail(option.error());
   const auto value = option ? static_cast<std::int16_t>(load_le(*option)) : std::int16_t{0};
   return std::find(staying.begin(), staying.end(), value) != staying.end();
 }
@@ -130,8 +131,9 @@ Result<void> Power::step(DriveState from, const drive::PowerStep& next) {
 }
 
 Result<std::vector<drive::PowerStep>> Power::path_to(DriveState from, DriveState goal) {
-  const bool resuming = from == DriveState::quick_stop_active && resumes();
-  if (auto path = drive::power_path(from, goal, resuming)) return std::move(*path);
+  const auto resuming = from == DriveState::quick_stop_active ? resumes() : Result<bool>(false);
+  if (!resuming) return fail(resuming.error());
+  if (auto path = drive::power_path(from, goal, *resuming)) return std::move(*path);
   const bool fault = from == DriveState::fault || from == DriveState::fault_reaction_active;
   return fail(drive_error(Errc::refused, node_,
                           fmt::format("is in {}: no command leads to {} from there (statusword 0x{:04X})",

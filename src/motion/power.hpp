@@ -69,7 +69,7 @@ class Power {
   bool says_go();
   Result<void> step(drive::DriveState from, const drive::PowerStep& next);
   Error stuck(drive::DriveState from, const drive::PowerStep& next) const;
-  bool resumes();
+  Result<bool> resumes();
 
   session::Session* session_;
   const drive::Profile* profile_;

@@ -103,6 +103,8 @@ void inherit(Dictionary& dictionary, const Dictionary& parent) {
         entry->unit = from.unit;
         entry->scale = from.scale;
         entry->encoding = from.encoding;
+        if (from.doubts.about("unit") && !entry->doubts.about("unit"))
+          entry->doubts.assumed.push_back({"unit", {}});
       }
       if (entry->labels.empty()) entry->labels = from.labels;
       if (entry->note.empty()) {

@@ -21,6 +21,7 @@ constexpr std::array kEsiUnits{
     UnitRow{0x10, "rad"}, UnitRow{0x20, "Hz"},   UnitRow{0x21, "N"},   UnitRow{0x24, "W"},
     UnitRow{0x26, "V"},   UnitRow{0x2D, "degC"}, UnitRow{0x41, "deg"}, UnitRow{0x47, "min"},
     UnitRow{0x48, "h"},   UnitRow{0x56, "Nm"},   UnitRow{0xB4, "rev"}, UnitRow{0xB5, "inc"},
+    UnitRow{0xC0, "rpm"},
 };
 
 constexpr std::uint8_t kSecond = 0x03;
@@ -57,9 +58,12 @@ std::optional<EsiUnit> esi_unit(std::string_view text) {
   const auto number = esi_integer(text);
   if (!number) return EsiUnit{std::string(text), 1};
   if (number->negative || number->magnitude > 0xFFFF'FFFF) return std::nullopt;
-  const auto power = static_cast<std::int8_t>(number->magnitude >> 24U);
-  auto name = unit_name(static_cast<std::uint8_t>(number->magnitude >> 16U),
-                        static_cast<std::uint8_t>(number->magnitude >> 8U));
+  return si_unit(static_cast<std::uint32_t>(number->magnitude));
+}
+
+std::optional<EsiUnit> si_unit(std::uint32_t code) {
+  const auto power = static_cast<std::int8_t>(code >> 24U);
+  auto name = unit_name(static_cast<std::uint8_t>(code >> 16U), static_cast<std::uint8_t>(code >> 8U));
   if (name.empty()) return std::nullopt;
   if (const auto prefix = prefix_of(power); !prefix.empty() && takes_prefix(name))
     return EsiUnit{std::string(prefix) + name, 1};

@@ -36,13 +36,17 @@ class Evaluation {
 
   void add(ObjectAddress object, const Result<Bytes>& answer) { answers_.emplace(object, &answer); }
 
-  /// By the first way whose conditions hold.
-  std::optional<Measured> of(const drive::Quotients& ways, std::optional<double> learned) const {
-    const auto way = std::find_if(ways.begin(), ways.end(), [&](const auto& w) { return holds(w); });
-    if (way == ways.end() || (way->learned && !learned)) return std::nullopt;
-    const auto value = of(*way);
-    if (!value) return std::nullopt;
-    return Measured{way->learned ? *value * *learned : *value, way->learned, &*way};
+  /// By the first way whose conditions hold and that says something.
+  std::optional<Measured> of(const MeasureQuestion& question, const drive::Quotients& ways) const {
+    const bool of_turn = question.measure != drive::Measure::rated_torque;
+    for (const auto& way : ways) {
+      if (!holds(way) || (way.learned && !question.learned)) continue;
+      auto value = of(way);
+      if (value && way.learned) *value *= *question.learned;
+      // A gear that nobody has set makes one increment of a turn.
+      if (value && (!of_turn || way.learned || *value > 1)) return Measured{*value, way.learned, &way};
+    }
+    return std::nullopt;
   }
 
  private:
@@ -83,7 +87,8 @@ class Evaluation {
 }  // namespace
 
 std::vector<std::optional<Measured>> read_measures(Session& session, const drive::Profile& profile,
-                                                   std::span<const MeasureQuestion> questions) {
+                                                   std::span<const MeasureQuestion> questions,
+                                                   std::optional<Error>* unanswered) {
   const auto& known = profile.rules.units;
   const auto ways_of = [&](const MeasureQuestion& question) {
     const auto found = known.find(question.measure);
@@ -95,6 +100,9 @@ std::vector<std::optional<Measured>> read_measures(Session& session, const drive
       for (const auto object : objects_of(*ways))
         requests.push_back({.node = question.node, .object = object});
   const auto answers = session.transfer(requests);
+  for (const auto& answer : answers)
+    if (unanswered != nullptr && !answer && answer.error().code != Errc::sdo_abort)
+      *unanswered = answer.error();
   std::vector<std::optional<Measured>> out;
   std::size_t next = 0;
   for (const auto& question : questions) {
@@ -105,7 +113,7 @@ std::vector<std::optional<Measured>> read_measures(Session& session, const drive
     }
     Evaluation evaluation(profile);
     for (const auto object : objects_of(*ways)) evaluation.add(object, answers[next++]);
-    out.push_back(evaluation.of(*ways, question.learned));
+    out.push_back(evaluation.of(question, *ways));
   }
   return out;
 }

@@ -28,8 +28,10 @@ struct Measured {
 
 /// Reads gear, encoder and rating objects of drives, as the family's rules say (`[units]`): increments in one
 /// turn of the motor, rated torque in Nm. Empty where the rules do not know the measure, or the drive does
-/// not answer an object of it, or nobody knows the number that it does not tell.
+/// not answer an object of it, or nobody knows the number that it does not tell. An answer that was lost is
+/// no object that is missing: `unanswered` gets its error, where it is not null.
 std::vector<std::optional<Measured>> read_measures(Session& session, const drive::Profile& profile,
-                                                   std::span<const MeasureQuestion> questions);
+                                                   std::span<const MeasureQuestion> questions,
+                                                   std::optional<Error>* unanswered = nullptr);
 
 }  // namespace servoctl::session

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "canopen/sdo_abort.hpp"
+#include "od/real_number.hpp"
 #include "session/bus_return.hpp"
 #include "session/identify.hpp"
 #include "session/no_register.hpp"
@@ -25,6 +26,17 @@ Result<void> take_answer(const Result<Bytes>& answer, SnapshotEntry& entry) {
   const auto code = answer.error().abort_code;
   entry.left_out = code ? fmt::format("refused: {}", canopen::sdo_abort_text(*code)) : answer.error().message;
   return {};
+}
+
+/// What is no number is none to be restored.
+void leave_out_no_number(const drive::DriveSetting& setting, SnapshotEntry& entry) {
+  const auto value =
+      entry.bytes ? od::decode(setting.entry->type, *entry.bytes) : Result<od::Value>(od::Value());
+  const auto encoding = setting.parameter != nullptr ? setting.parameter->encoding : setting.entry->encoding;
+  if (!entry.bytes || !value || od::is_number(encoding, *value)) return;
+  entry.left_out =
+      fmt::format("its bits, {}, are those of infinity or of no number (NaN)", to_hex(*entry.bytes));
+  entry.bytes.reset();
 }
 
 /// What is read of two drives of one number, now from the one and now from the other, is of neither.
@@ -69,6 +81,7 @@ std::vector<Result<Snapshot>> take_snapshots(Session& session, const drive::Prof
     for (const auto& setting : settings) {
       SnapshotEntry entry{setting.entry->address, {}, std::string(setting.left_out)};
       const auto taken = setting.left_out.empty() ? take_answer(answers[next++], entry) : Result<void>{};
+      leave_out_no_number(setting, entry);
       if (!taken && snapshot) snapshot = fail(taken.error());
       if (snapshot) snapshot->entries.push_back(std::move(entry));
     }

@@ -4,8 +4,13 @@
 #include <algorithm>
 #include <set>
 
+#include "base/number.hpp"
+#include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
+#include "drive/assumed_unit.hpp"
+#include "drive/unit.hpp"
 #include "session/cob_id_check.hpp"
+#include "session/drive_units.hpp"
 #include "session/measure.hpp"
 #include "settings/energising.hpp"
 #include "settings/keeping_nodes.hpp"
@@ -68,15 +73,39 @@ void warn_of_gear(show::Desk& desk, std::uint8_t node, drive::Measure measure) {
     desk.notices.push_back(notice);
 }
 
-/// What the drive's gear makes of the unit in the text, where only the drive can tell.
-void add_bridge(show::Desk& desk, std::uint8_t node, const drive::Target& target, std::string_view text,
-                drive::Meaning& meaning) {
-  if (!asks_measure(desk, meaning, text)) return;
+/// What the drive's gear makes of the unit in the text, where only the drive can tell. Errors of an answer
+/// that was lost.
+Result<void> add_bridge(show::Desk& desk, std::uint8_t node, const drive::Target& target,
+                        std::string_view text, drive::Meaning& meaning) {
+  if (!asks_measure(desk, meaning, text)) return {};
   const session::MeasureQuestion question[] = {{node, *meaning.measure}};
-  const auto measure = session::read_measures(*desk.session, *desk.profile, question).front();
-  if (!measure) return;
+  std::optional<Error> unanswered;
+  const auto measure = session::read_measures(*desk.session, *desk.profile, question, &unanswered).front();
+  if (unanswered) return fail(*unanswered);
+  if (!measure) return {};
   meaning.bridge = drive::bridge(meaning.unit, target.address, measure->value);
   warn_of_gear(desk, node, question[0].measure);
+  return {};
+}
+
+/// A number with a unit, for an object whose unit the family's data only assume: by the drive's own.
+bool asks_unit(const show::Desk& desk, const drive::Target& target, std::string_view text) {
+  return drive::is_unit_assumed(target) && desk.profile != nullptr && !parse_integer(trim(text)) &&
+         drive::split_unit(trim(text)).has_value();
+}
+
+Result<void> prove_unit(const session::DriveUnits& own, const drive::Target& target, drive::Meaning& meaning,
+                        std::string_view text) {
+  if (own.unanswered()) return fail(*own.unanswered());
+  if (!own.proves(target))
+    return fail(
+        Errc::usage,
+        fmt::format("'{}': the unit of this object is not known: neither the drive's data nor the drive "
+                    "(60A8h, 60A9h, 60AAh) states it",
+                    text),
+        "write the plain number that the drive takes; its manual gives the unit");
+  own.apply(target, meaning);
+  return {};
 }
 
 tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target,
@@ -182,7 +211,13 @@ Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Tar
     meaning = learn_size(desk, node, target, *meaning);
     if (!meaning) return fail(meaning.error());
   }
-  add_bridge(desk, node, target, value, *meaning);
+  std::optional<session::DriveUnits> own;  // Meaning::unit points into it.
+  if (asks_unit(desk, target, value)) {
+    own.emplace(*desk.session, *desk.profile, node);
+    if (const auto proven = prove_unit(*own, target, *meaning, value); !proven)
+      return named(proven.error(), node, target);
+  }
+  if (const auto added = add_bridge(desk, node, target, value, *meaning); !added) return fail(added.error());
   return change_to(desk.profile, node, target, *meaning, value);
 }
 
@@ -191,7 +226,7 @@ Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive
   const auto meaning = writable_meaning(node, target, type);
   if (!meaning) return fail(meaning.error());
   const bool asks_size = !type && (!meaning->type_known || !meaning->size_known);
-  if (asks_size || asks_measure(desk, *meaning, value)) return {};
+  if (asks_size || asks_unit(desk, target, value) || asks_measure(desk, *meaning, value)) return {};
   if (const auto change = change_to(desk.profile, node, target, *meaning, value); !change)
     return fail(change.error());
   return {};

@@ -6,6 +6,7 @@
 
 #include "base/file.hpp"
 #include "canopen/sdo_frame.hpp"
+#include "od/real_number.hpp"
 #include "session/cob_id_check.hpp"
 #include "settings/keeping_nodes.hpp"
 #include "settings/stored_copies.hpp"
@@ -73,6 +74,10 @@ Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node
     return fail(Errc::usage, fmt::format("{} takes {} bytes, {} has {}", target.in_sentence(), *size,
                                          file.string(), content->size()));
   Bytes data(content->begin(), content->end());
+  const auto value = size ? od::decode(meaning.type, data) : Result<od::Value>(od::Value(std::uint64_t{0}));
+  if (value && !od::is_number(meaning.encoding, *value))
+    return fail(Errc::usage, fmt::format("{}: the bits in {} are those of infinity or of no number (NaN)",
+                                         target.in_sentence(), file.string()));
   if (const auto free = session::check_cob_id(profile, target.address, data, node); !free) {
     auto error = free.error();
     error.message = fmt::format("{}: {}", target.in_sentence(), error.message);

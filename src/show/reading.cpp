@@ -5,6 +5,7 @@
 
 #include "base/number.hpp"
 #include "canopen/node_id.hpp"
+#include "drive/assumed_unit.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/measure.hpp"
 #include "show/records.hpp"
@@ -32,6 +33,7 @@ void add_bridges(session::Session& session, const drive::Profile& profile, std::
   const auto question_of = [&](const Reading& reading) -> std::optional<session::MeasureQuestion> {
     const auto measure = drive::meaning(reading.target, reading.node).measure;
     if (!measure || !reading.bytes || profile.rules.units.count(*measure) == 0) return std::nullopt;
+    if (drive::is_unit_assumed(reading.target)) return std::nullopt;
     return session::MeasureQuestion{reading.node, *measure};
   };
   std::vector<session::MeasureQuestion> questions;

@@ -86,17 +86,24 @@ double Axis::per_turn(drive::Measure measure) const {
       return load_le(values_->in_force(condition.object)) == condition.value;
     });
   };
-  const auto found = std::find_if(ways.begin(), ways.end(), holds);
-  const auto& way = found == ways.end() ? ways.front() : *found;
-  double out = way.learned ? own_counts_ : 1;
   const auto factor = [&](const drive::Quotient::Factor& f) {
     const auto* object = std::get_if<ObjectAddress>(&f);
     return object != nullptr ? read(*object) : std::get<double>(f);
   };
-  for (const auto& f : way.multiply) out *= factor(f);
-  for (const auto& f : way.divide) out /= factor(f);
-  for (const auto object : way.power_of_two) out = std::ldexp(out, static_cast<int>(read(object)));
-  return std::isfinite(out) && out > 1 ? out : kAssumedTurn;
+  const auto value_of = [&](const drive::Quotient& way) {
+    double out = way.learned ? own_counts_ : 1;
+    for (const auto& f : way.multiply) out *= factor(f);
+    for (const auto& f : way.divide) out /= factor(f);
+    for (const auto object : way.power_of_two) out = std::ldexp(out, static_cast<int>(read(object)));
+    return out;
+  };
+  const bool none = std::none_of(ways.begin(), ways.end(), holds);
+  for (const auto& way : ways) {
+    if (!holds(way) && !(none && &way == &ways.front())) continue;
+    const double out = value_of(way);
+    if (std::isfinite(out) && out > 1) return out;
+  }
+  return kAssumedTurn;
 }
 
 double Axis::speed_factor(ObjectAddress object) const {

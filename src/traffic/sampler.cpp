@@ -8,6 +8,7 @@
 
 #include "base/csv.hpp"
 #include "base/number.hpp"
+#include "drive/assumed_unit.hpp"
 #include "session/measure.hpp"
 #include "show/records.hpp"
 
@@ -25,6 +26,7 @@ void add_bridges(show::Desk& desk, std::vector<Channel>& channels, std::optional
     if (node && channel.node != *node) continue;
     const auto measure = drive::meaning(channel.target, channel.node).measure;
     if (!measure || desk.profile->rules.units.count(*measure) == 0) continue;
+    if (drive::is_unit_assumed(channel.target)) continue;
     questions.push_back({channel.node, *measure});
     asking.push_back(&channel);
   }

@@ -185,5 +185,19 @@ TEST(Quantity, IsToldWithoutAnExponent) {
   EXPECT_EQ(plain_text(m, od::Value(std::uint64_t{0x551184E7})), "1000000000000");
 }
 
+TEST(QuantityOfBits, OfInfinityOrOfNoNumberIsRefused) {
+  Meaning encoded;
+  encoded.type_known = true;
+  encoded.encoding = od::Encoding::f32;
+  EXPECT_FALSE(parse_quantity(encoded, "0x7FC00000")) << "NaN";
+  EXPECT_FALSE(parse_quantity(encoded, "0xFF800000")) << "-infinity";
+  EXPECT_TRUE(parse_quantity(encoded, "0x7F7FFFFF")) << "the greatest finite number";
+  Meaning real;
+  real.type = od::DataType::f32;
+  real.type_known = true;
+  EXPECT_FALSE(check_limits(real, *od::decode(od::DataType::f32, store_le(0x7FC00000, 4))));
+  EXPECT_TRUE(check_limits(real, od::Value(1.5)));
+}
+
 }  // namespace
 }  // namespace servoctl::drive

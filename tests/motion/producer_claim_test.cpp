@@ -44,7 +44,7 @@ class TwoMasters {
  private:
   void jog_one(std::size_t i, const Jog& kind) {
     MotionOptions options;
-    options.turn = 131072;
+    options.turn = wire.cell.profiles.front()->family == "ts" ? 10000 : 131072;
     if (on_sample) options.on_sample = [this, i](const MotionSample& sample) { on_sample(i, sample); };
     {
       Motion motion(*sessions[i], *wire.cell.profiles.front(), static_cast<std::uint8_t>(i + 1), options);

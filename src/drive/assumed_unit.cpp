@@ -1,0 +1,18 @@
+#include "drive/assumed_unit.hpp"
+
+#include <algorithm>
+
+#include "drive/scaling.hpp"
+
+namespace servoctl::drive {
+
+bool is_unit_assumed(const Target& target) {
+  if (target.parameter != nullptr || target.entry == nullptr) return false;
+  const auto& entry = *target.entry;
+  const auto& assumed = entry.doubts.assumed;
+  return needed_measure(entry.unit, target.address) == Measure::increments_per_turn &&
+         std::any_of(assumed.begin(), assumed.end(),
+                     [](const od::Mark& mark) { return mark.field == "unit"; });
+}
+
+}  // namespace servoctl::drive

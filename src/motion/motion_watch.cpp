@@ -1,0 +1,49 @@
+// How a motion is watched until it is over, or has to end.
+#include <fmt/format.h>
+#include <new>
+
+#include "motion/motion.hpp"
+
+namespace servoctl::motion {
+
+/// What a motion keeps grows with its time.
+Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest) {
+  try {
+    return supervise(done, longest);
+  } catch (const std::bad_alloc&) {
+    return fail(
+        error(Errc::bug, "out of memory: the motion ends", "use a shorter motion, or free some memory"));
+  }
+}
+
+Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSample&)>& done,
+                               Duration longest) {
+  const auto end = session_->now() + longest;
+  for (;;) {
+    const auto sample = monitor_->sample(end);
+    if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
+    if (!sample) return fail(sample.error());
+    if (const auto fits = check_turn(*sample); !fits) return fail(fits.error());
+    if (const auto object = guard_ ? guard_->foreign_command() : std::nullopt)
+      return fail(error(Errc::negative,
+                        fmt::format("another master wrote object {} while moving", to_string(*object)),
+                        "two masters command the drive: stop the other one"));
+    if (options_.unheard && options_.unheard())
+      return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));
+    const auto enough = done(*sample);
+    if (!enough || *enough) return enough;
+    if (session_->now() >= end) return false;
+    if (const auto waited = monitor_->wait_for_next(); !waited) return fail(waited.error());
+  }
+}
+
+Result<void> Motion::wait_for_rest(Duration longest) {
+  const auto rested =
+      watch([this](const MotionSample& sample) -> Result<bool> { return stands_still(sample); }, longest);
+  if (!rested) return fail(rested.error());
+  if (*rested) return {};
+  return fail(error(Errc::negative, "did not come to rest in time at the end of the motion",
+                    "check its deceleration (6084h) and its load"));
+}
+
+}  // namespace servoctl::motion
