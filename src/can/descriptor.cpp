@@ -3,6 +3,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <optional>
 #include <span>
 #include <system_error>
@@ -36,6 +38,21 @@ Wake wait_or_signal(int fd, short events, TimePoint deadline) {
   pollfd entry{fd, events, 0};
   const auto end = deadline == kNever ? std::nullopt : std::optional(deadline);
   return wake(servoctl::wait_or_signal_until(std::span(&entry, 1), end));
+}
+
+Taken take_in(int fd, std::string& out) {
+  constexpr std::size_t kMostAtOnce = std::size_t{1} << 16U;
+  std::array<char, 8192> bytes;
+  for (std::size_t all = 0; all < kMostAtOnce;) {
+    const auto count = ::read(fd, bytes.data(), bytes.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && errno == EAGAIN) break;
+    if (count <= 0) return {false, count < 0 ? errno : 0};
+    out.append(bytes.data(), static_cast<std::size_t>(count));
+    if (static_cast<std::size_t>(count) < bytes.size()) break;
+    all += bytes.size();
+  }
+  return {};
 }
 
 void nap(Duration time) { wait_for(-1, 0, steady_now() + time); }

@@ -43,6 +43,15 @@ Wake wait_for(int fd, short events, TimePoint deadline);
 /// back to whoever asks what the signal means.
 Wake wait_or_signal(int fd, short events, TimePoint deadline);
 
+/// What became of the other end.
+struct Taken {
+  bool there = true;
+  int error = 0;  ///< Of a connection that is lost; 0 where it was closed.
+};
+/// Adds what a descriptor that does not block has, 64 KiB at most: a peer that never stops sending keeps
+/// nobody from looking at signals, deadlines and limits, and fills no memory.
+Taken take_in(int fd, std::string& out);
+
 /// Waits for `time`, or for a signal.
 void nap(Duration time);
 

@@ -12,7 +12,6 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <utility>
@@ -187,15 +186,8 @@ Result<void> SerialPort::write(std::string_view text, TimePoint limit) {
 }
 
 Result<void> SerialPort::read(std::string& out) {
-  std::array<char, 4096> bytes;
-  for (;;) {
-    const auto count = ::read(port_.get(), bytes.data(), bytes.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && errno == EAGAIN) return {};
-    if (count <= 0) return gone(count < 0 ? errno : 0);
-    out.append(bytes.data(), static_cast<std::size_t>(count));
-    if (static_cast<std::size_t>(count) < bytes.size()) return {};
-  }
+  if (const auto taken = take_in(port_.get(), out); !taken.there) return gone(taken.error);
+  return {};
 }
 
 }  // namespace servoctl::can

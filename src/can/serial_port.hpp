@@ -47,7 +47,7 @@ class SerialPort {
 
   /// All of the text, waited for until `limit`. Errc::bus when the port is gone, or does not take it in time.
   Result<void> write(std::string_view text, TimePoint limit);
-  /// Adds what is there. Errc::bus when the port is gone.
+  /// Adds what is there, as take_in(). Errc::bus when the port is gone.
   Result<void> read(std::string& out);
   /// Waits until all that was written has left, or for `limit`.
   void drain(TimePoint limit) const;

@@ -152,7 +152,7 @@ void SlcanReader::put(std::string_view bytes) {
     } else if (byte == kBell) {
       // What stands in front of it has lost its end.
       if (!line_.empty() || too_long_) end_line();
-      lines_.push_back({.kind = LineKind::refused});
+      if (lines_.size() < kMostLines) lines_.push_back({.kind = LineKind::refused});
     } else if (line_.size() < kMostLine) {
       line_ += byte;
     } else {

@@ -146,7 +146,7 @@ Result<SocketcandPlace> parse_socketcand_place(std::string_view text) {
 void SocketcandReader::put(std::string_view bytes) {
   for (const char byte : bytes) {
     if (byte == '<') {
-      if (inside_) elements_.push_back({.kind = Element::Kind::damaged});
+      if (inside_) add({.kind = Element::Kind::damaged});
       element_.clear();
       inside_ = true;
       garbage_ = false;
@@ -155,18 +155,21 @@ void SocketcandReader::put(std::string_view bytes) {
     } else if (inside_ && element_.size() < kMostElement) {
       element_ += byte == '\r' || byte == '\n' || byte == '\t' ? ' ' : byte;
     } else if (inside_) {
-      elements_.push_back({.kind = Element::Kind::damaged});
+      add({.kind = Element::Kind::damaged});
       inside_ = false;
       garbage_ = true;
     } else if (byte != ' ' && byte != '\r' && byte != '\n' && !std::exchange(garbage_, true)) {
-      elements_.push_back({.kind = Element::Kind::damaged});
+      add({.kind = Element::Kind::damaged});
     }
   }
 }
 
 void SocketcandReader::end_element() {
   inside_ = false;
-  auto element = parse_element(element_);
+  add(parse_element(element_));
+}
+
+void SocketcandReader::add(SocketcandElement element) {
   if (elements_.size() < kMostElements) elements_.push_back(std::move(element));
 }
 

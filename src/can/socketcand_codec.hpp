@@ -54,6 +54,7 @@ class SocketcandReader {
 
  private:
   void end_element();
+  void add(SocketcandElement element);
 
   std::string element_;
   bool inside_ = false;   ///< Of an element.

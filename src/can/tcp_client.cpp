@@ -9,7 +9,6 @@
 #include <sys/socket.h>
 
 #include <fmt/format.h>
-#include <array>
 #include <cerrno>
 #include <memory>
 #include <optional>
@@ -194,15 +193,8 @@ void TcpClient::abandon() {
 }
 
 Result<void> TcpClient::receive(std::string& out) {
-  std::array<char, 8192> bytes;
-  for (;;) {
-    const auto count = ::recv(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && errno == EAGAIN) return {};
-    if (count <= 0) return lost(count < 0 ? errno : 0);
-    out.append(bytes.data(), static_cast<std::size_t>(count));
-    if (static_cast<std::size_t>(count) < bytes.size()) return {};
-  }
+  if (const auto taken = take_in(socket_.get(), out); !taken.there) return lost(taken.error);
+  return {};
 }
 
 }  // namespace servoctl::can

@@ -32,7 +32,7 @@ class TcpClient {
   Result<void> send(std::string_view text, TimePoint limit);
   /// Closed without what was not delivered yet: the connection is lost, and it would come late.
   void abandon();
-  /// Adds what is there. Errc::bus when the connection is lost, or was closed.
+  /// Adds what is there, as take_in(). Errc::bus when the connection is lost, or was closed.
   Result<void> receive(std::string& out);
 
  private:

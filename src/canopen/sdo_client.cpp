@@ -11,20 +11,24 @@
 namespace servoctl::canopen {
 namespace {
 
-/// An answer that a node had ready when it sent its boot-up comes at once; a node that has restarted has
-/// none.
-constexpr Duration kAnswerAfterBootUp = std::chrono::milliseconds(100);
-
 std::uint8_t command_of(const can::Frame& frame) { return frame.data[0] & 0xE0U; }
 
 }  // namespace
 
-void SdoClient::start_upload(ObjectAddress object, TimePoint now, Transfer transfer, std::size_t size) {
+void SdoClient::start_upload(ObjectAddress object, TimePoint now, Transfer transfer, std::size_t size,
+                             bool again) {
+  core_.begin(again);
+  is_shadowed_ = core_.is_shadowed(object);
   object_ = object;
   size_ = size;
   transfer_ = transfer;
   foreign_request_ = false;
-  if (transfer == Transfer::block || transfer == Transfer::domain) return begin_block_upload(now);
+  if (!core_.is_clear(object)) return check(now);
+  begin_wanted_upload(now);
+}
+
+void SdoClient::begin_wanted_upload(TimePoint now) {
+  if (transfer_ == Transfer::block || transfer_ == Transfer::domain) return begin_block_upload(now);
   begin_upload(now);
 }
 
@@ -32,10 +36,13 @@ void SdoClient::begin_upload(TimePoint now) {
   data_.clear();
   announced_.reset();
   toggle_ = 0;
+  core_.ask_read(object_, now);
   send(sdo_frame(kSdoRequest + node_, 0x40, object_), State::upload_initiate, now);
 }
 
 void SdoClient::start_download(ObjectAddress object, Bytes data, TimePoint now, Transfer transfer) {
+  core_.begin(false);
+  is_shadowed_ = core_.is_shadowed(object);
   object_ = object;
   transfer_ = transfer;
   foreign_request_ = false;
@@ -50,6 +57,7 @@ void SdoClient::start_download(ObjectAddress object, Bytes data, TimePoint now, 
 void SdoClient::begin_download(bool expedited, TimePoint now) {
   offset_ = 0;
   toggle_ = 0;
+  core_.ask_write(object_, data_, now);
   const auto size = static_cast<std::uint32_t>(data_.size());
   if (expedited) {
     const auto command = static_cast<std::uint8_t>(0x23U | (4U - size) << 2U);
@@ -62,18 +70,21 @@ void SdoClient::begin_download(bool expedited, TimePoint now) {
 }
 
 void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
-  if (state_ == State::idle || frame.extended || frame.remote || frame.error) return;
-  if (frame.id == kSdoRequest + node_) return on_foreign_request();
+  if (frame.extended || frame.remote || frame.error) return;
+  if (frame.id == kSdoRequest + node_) return on_foreign_request(frame, now);
   if (frame.id == kErrorControl + node_ && frame.size == 1 && frame.data[0] == 0) return on_boot_up(now);
   if (frame.id != kSdoAnswer + node_) return;
   if (frame.size != 8) {
-    abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("its answer has {} bytes instead of 8", frame.size));
+    if (state_ != State::idle)
+      abort(sdo_abort::kCommand, Errc::protocol,
+            fmt::format("its answer has {} bytes instead of 8", frame.size));
     return;
   }
+  if (!is_anonymous() && !is_first_answer(frame, now)) return;
   if (frame.data[0] == kSdoAbortCommand) return on_abort(frame, now);
   switch (state_) {
-    case State::idle: break;
+    case State::idle:
+    case State::resync: break;
     case State::upload_initiate: return on_upload_initiate(frame, now);
     case State::upload_segment: return on_upload_segment(frame, now);
     case State::download_initiate: return on_download_initiate(frame, now);
@@ -88,8 +99,8 @@ void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
 }
 
 void SdoClient::on_abort(const can::Frame& frame, TimePoint now) {
-  if (sdo_object(frame) != object_) return;
   const auto code = sdo_data(frame);
+  if (sdo_object(frame) != object_) return core_.note(frame.data[0], sdo_object(frame), code);
   const bool may_fall_back = transfer_ != Transfer::block && refuses_block_transfer(code);
   if (state_ == State::block_upload_initiate && may_fall_back) return begin_upload(now);
   if (state_ == State::block_download_initiate && may_fall_back) return begin_download(false, now);
@@ -101,31 +112,12 @@ void SdoClient::on_abort(const can::Frame& frame, TimePoint now) {
   finish(fail(std::move(refused)));
 }
 
-/// Segments carry no object: what another master asks for would be taken as ours. Before them, answers tell
-/// by their object whose they are.
-void SdoClient::on_foreign_request() {
-  foreign_request_ = true;
-  const bool anonymous = state_ != State::upload_initiate && state_ != State::download_initiate &&
-                         state_ != State::block_upload_initiate && state_ != State::block_download_initiate;
-  if (anonymous)
-    finish(fail(error(Errc::protocol, "another master uses its SDO channel at the same time",
-                      "stop the other master, a PLC or a second tool, and try again")));
-}
-
-/// Some send it without having restarted, when 1017h is written: the answer that follows is the true one.
-void SdoClient::on_boot_up(TimePoint now) {
-  if (state_ == State::block_download_data) return end_by_boot_up();
-  boot_up_ = true;
-  deadline_ = std::min(deadline_, now + kAnswerAfterBootUp);
-}
-
 void SdoClient::end_by_boot_up() {
   finish(fail(error(Errc::timeout, "the node restarted (boot-up) in the middle of the transfer",
                     "did it lose its supply, or did somebody reset it? Try again when it has started")));
 }
 
 void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
-  if (sdo_object(frame) != object_) return;
   if (command_of(frame) != 0x40) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("it answered a read with command 0x{:02X}", frame.data[0]));
@@ -181,7 +173,6 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
 }
 
 void SdoClient::on_download_initiate(const can::Frame& frame, TimePoint now) {
-  if (sdo_object(frame) != object_) return;
   if (command_of(frame) != 0x60) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("it answered a write with command 0x{:02X}", frame.data[0]));
@@ -223,46 +214,23 @@ void SdoClient::send_segment(TimePoint now) {
   send(frame, State::download_segment, now);
 }
 
-void SdoClient::on_time(TimePoint now) {
-  if (state_ == State::idle || now < deadline_) return;
-  if (boot_up_) return end_by_boot_up();
-  // The last segment of a block has just been handed over: the other side's time begins now.
-  if (deadline_ == TimePoint::min()) {
-    deadline_ = now + timeout_;
-    return;
-  }
-  // The end of a block was lost: an early acknowledge asks for it again.
-  if (state_ == State::block_upload_data && receiver_.has_some() && !nudged_) {
-    acknowledge_block(State::block_upload_data, now);
-    nudged_ = true;
-    return;
-  }
-  const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
-  const bool asked_for_block =
-      state_ == State::block_upload_initiate || state_ == State::block_download_initiate;
-  abort(sdo_abort::kTimeout, Errc::timeout,
-        fmt::format("no answer{} within {} ms", asked_for_block ? " to the block transfer request" : "",
-                    waited),
-        asked_for_block ? "if the node answers `read 0x1000`, try --transfer segmented" : "");
-}
-
 void SdoClient::send(const can::Frame& frame, State next, TimePoint now) {
   tx_ = frame;
   boot_up_ = false;
   state_ = next;
-  deadline_ = now + timeout_;
+  core_.wait(now);
 }
 
 void SdoClient::abort(std::uint32_t code, Errc errc, std::string why, std::string hint) {
+  const auto asked = state_ == State::resync ? check_ : object_;
   finish(fail(error(errc, std::move(why), std::move(hint))));
-  tx_ = sdo_frame(kSdoRequest + node_, kSdoAbortCommand, object_, code);
+  tx_ = sdo_frame(kSdoRequest + node_, kSdoAbortCommand, asked, code);
 }
 
 void SdoClient::finish(Result<Bytes> result) {
   state_ = State::idle;
   boot_up_ = false;
-  deadline_ = kNever;
-  result_ = std::move(result);
+  core_.finish(std::move(result));
 }
 
 Error SdoClient::error(Errc code, std::string message, std::string hint) const {
@@ -282,9 +250,9 @@ std::optional<can::Frame> SdoClient::take_frame() {
     return std::exchange(tx_, std::exchange(following_, std::nullopt));
   const auto segment = sender_.next_segment();
   if (!segment) return std::nullopt;
-  if (sender_.is_waiting()) deadline_ = TimePoint::min();
+  if (sender_.is_waiting()) core_.wait_until(TimePoint::min());
   return can::make_frame(kSdoRequest + node_, *segment);
 }
-std::optional<Result<Bytes>> SdoClient::take_result() { return std::exchange(result_, std::nullopt); }
+std::optional<Result<Bytes>> SdoClient::take_result() { return core_.take_end(); }
 
 }  // namespace servoctl::canopen

@@ -10,6 +10,7 @@
 #include "base/time.hpp"
 #include "can/frame.hpp"
 #include "canopen/sdo_block.hpp"
+#include "canopen/sdo_core.hpp"
 #include "canopen/transfer.hpp"
 
 namespace servoctl::canopen {
@@ -20,27 +21,38 @@ inline constexpr std::size_t kBlockWorthwhile = 64;
 /// The client side of one SDO channel (CiA 301, 7.2.4): one transfer at a time. Performs no I/O and reads no
 /// clock: give it frames and time, take frames and the result from it.
 ///
-/// Frames of other nodes, answers for other objects (late ones of an earlier request) and remote frames are
-/// ignored. Every transfer ends with exactly one result: the data, or Errc::sdo_abort, timeout or protocol
-/// with node and object set. When the client gives up it tells the server with an abort. After a
-/// boot-up message of the node the answer has 100 ms more: without it the transfer ends as by a timeout.
-/// Where block transfer is tried and refused as such, the transfer is made in segments.
+/// Frames of other nodes, late answers to an earlier request and remote frames are ignored. Before an object
+/// is read again whose last read may still be answered, another object is read that every node has: behind
+/// that answer none is late. A write goes out at once; where its answer may be that to an earlier write of
+/// the object, it ends with Errc::timeout: whether it was done is not known. All frames of the channel have
+/// to be given, also between transfers: answers that come late are known by them. Every transfer ends with
+/// exactly one result: the data, or Errc::sdo_abort, timeout or protocol with node and object set. When the
+/// client gives up it tells the server with an abort. After a boot-up message of the node the answer has 100
+/// ms more: without it the transfer ends as by a timeout. Where block transfer is tried and refused as such,
+/// the transfer is made in segments.
 class SdoClient {
  public:
   /// `node` 1..127; `timeout` is the longest silence of the server between two frames.
-  SdoClient(std::uint8_t node, Duration timeout) : node_(node), timeout_(timeout) {}
+  SdoClient(std::uint8_t node, Duration timeout) : node_(node), core_(timeout) {}
 
   /// Reads an object. Must not be called while a transfer is under way. `size` is how many bytes the object
-  /// has, 1..4, if that is known: servers may answer in one frame without saying it.
+  /// has, 1..4, if that is known: servers may answer in one frame without saying it. `again`: it is a further
+  /// try of the read before it, and a late answer to that one will do.
   void start_upload(ObjectAddress object, TimePoint now, Transfer transfer = Transfer::automatic,
-                    std::size_t size = 0);
+                    std::size_t size = 0, bool again = false);
   /// Writes an object. With Transfer::automatic: expedited up to 4 bytes, in segments or blocks above and for
   /// none. With Transfer::expedited, 1 to 4 bytes only.
   void start_download(ObjectAddress object, Bytes data, TimePoint now,
                       Transfer transfer = Transfer::automatic);
 
   /// The longest silence from now on. Must not be called while a transfer is under way.
-  void set_timeout(Duration timeout) { timeout_ = timeout; }
+  void set_timeout(Duration timeout) { core_.set_timeout(timeout); }
+
+  /// A frame that another client of this process has sent to the node.
+  void overhear(const can::Frame& request, TimePoint now);
+  /// What the node may still answer, as another client of this process knows it.
+  void adopt(const OpenRequests& open) { core_.open() = open; }
+  const OpenRequests& open_requests() const { return core_.open(); }
 
   void on_frame(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);
@@ -51,7 +63,7 @@ class SdoClient {
   std::optional<Result<Bytes>>
   take_result();  ///< Set once, when the transfer has ended; empty bytes after a download.
   TimePoint deadline() const {
-    return deadline_;
+    return core_.deadline();
   }  ///< When on_time() has something to do; kNever while idle.
   bool busy() const { return state_ != State::idle; }
   std::uint8_t node() const { return node_; }
@@ -62,6 +74,7 @@ class SdoClient {
  private:
   enum class State : std::uint8_t {
     idle,
+    resync,  ///< What was asked before may still be answered: another object is read first.
     upload_initiate,
     upload_segment,
     download_initiate,
@@ -74,7 +87,13 @@ class SdoClient {
     block_download_end,
   };
 
+  bool is_first_answer(const can::Frame& frame, TimePoint now);
+  void check(TimePoint now);
+  void on_check(TimePoint now);
+  void end_in_doubt();
+  void on_silence();
   void on_abort(const can::Frame& frame, TimePoint now);
+  void begin_wanted_upload(TimePoint now);
   void begin_upload(TimePoint now);
   void begin_download(bool expedited, TimePoint now);
 
@@ -91,7 +110,8 @@ class SdoClient {
   void on_block_download_data(const can::Frame& frame, TimePoint now);
   void on_block_download_end(const can::Frame& frame, TimePoint now);
   void acknowledge_block(State next, TimePoint now);
-  void on_foreign_request();
+  void on_foreign_request(const can::Frame& frame, TimePoint now);
+  bool is_anonymous() const;
   void on_boot_up(TimePoint now);
   void end_by_boot_up();
   void leave_block_upload(TimePoint now);
@@ -103,7 +123,7 @@ class SdoClient {
   Error error(Errc code, std::string message, std::string hint = {}) const;
 
   std::uint8_t node_;
-  Duration timeout_;
+  SdoCore core_;
   State state_ = State::idle;
   ObjectAddress object_;
   Bytes data_;
@@ -114,7 +134,9 @@ class SdoClient {
   bool foreign_request_ = false;  ///< Another master has asked this node since the transfer began.
   bool boot_up_ = false;          ///< The node has sent a boot-up since the last request.
   std::uint8_t toggle_ = 0;
-  TimePoint deadline_ = kNever;
+  ObjectAddress check_;          ///< What is read in State::resync.
+  bool is_shadowed_ = false;     ///< Of this object something older may still be answered.
+  bool check_answered_ = false;  ///< Perhaps an earlier reading of it.
   BlockSender sender_;
   BlockReceiver receiver_;
   bool crc_ = false;                        ///< Both sides make one.
@@ -122,7 +144,6 @@ class SdoClient {
   std::optional<can::Frame> acknowledged_;  ///< The acknowledge received last.
   std::optional<can::Frame> tx_;
   std::optional<can::Frame> following_;  ///< To be sent behind `tx_`.
-  std::optional<Result<Bytes>> result_;
 };
 
 }  // namespace servoctl::canopen

@@ -19,13 +19,13 @@ void SdoClient::begin_block_upload(TimePoint now) {
   data_.clear();
   announced_.reset();
   toggle_ = 0;
+  core_.ask_read(object_, now);
   auto request = sdo_frame(kSdoRequest + node_, 0xA0 | kCrcSupported, object_);
   request.data[4] = kMaxBlockSize;
   send(request, State::block_upload_initiate, now);
 }
 
 void SdoClient::on_block_upload_initiate(const can::Frame& frame, TimePoint now) {
-  if (sdo_object(frame) != object_) return;
   const auto command = frame.data[0];
   if ((command & 0xE0U) == 0x40 && transfer_ != Transfer::block) return on_upload_initiate(frame, now);
   if ((command & 0xE1U) != 0xC0) {
@@ -61,7 +61,7 @@ void SdoClient::on_block_upload_data(const can::Frame& frame, TimePoint now) {
     return;
   }
   // Half of the time, so that a lost end of a block can be asked for before the other side gives up.
-  deadline_ = now + (nudged_ ? timeout_ : timeout_ / 2);
+  core_.wait_until(now + (nudged_ ? core_.timeout() : core_.timeout() / 2));
   if (!ended) return;
   nudged_ = false;
   acknowledge_block(receiver_.has_last() ? State::block_upload_end : State::block_upload_data, now);
@@ -99,13 +99,13 @@ void SdoClient::on_block_upload_end(const can::Frame& frame, TimePoint) {
 
 void SdoClient::begin_block_download(TimePoint now) {
   acknowledged_.reset();
+  core_.ask_write(object_, data_, now);
   send(
       sdo_frame(kSdoRequest + node_, 0xC2 | kCrcSupported, object_, static_cast<std::uint32_t>(data_.size())),
       State::block_download_initiate, now);
 }
 
 void SdoClient::on_block_download_initiate(const can::Frame& frame, TimePoint) {
-  if (sdo_object(frame) != object_) return;
   if (block_command(frame) != 0xA0) {
     abort(sdo_abort::kCommand, Errc::protocol,
           fmt::format("it answered the block transfer request with command 0x{:02X}", frame.data[0]));
@@ -120,7 +120,7 @@ void SdoClient::on_block_download_initiate(const can::Frame& frame, TimePoint) {
   crc_ = (frame.data[0] & kCrcSupported) != 0;
   sender_.start(std::exchange(data_, {}), block_size);
   state_ = State::block_download_data;
-  deadline_ = kNever;
+  core_.wait_until(kNever);
 }
 
 void SdoClient::on_block_download_data(const can::Frame& frame, TimePoint now) {
@@ -140,7 +140,7 @@ void SdoClient::on_block_download_data(const can::Frame& frame, TimePoint now) {
     return;
   }
   if (!sender_.is_done()) {
-    deadline_ = kNever;
+    core_.wait_until(kNever);
     return;
   }
   auto end =

@@ -28,30 +28,38 @@ std::uint8_t specifier(ByteSpan message) { return command(message) & 0xE0U; }
 
 }  // namespace
 
-void CoeClient::begin(ObjectAddress object, Transfer transfer) {
+bool CoeClient::begin(ObjectAddress object, Transfer transfer, bool again) {
+  core_.begin(again);
+  is_shadowed_ = core_.is_shadowed(object);
   object_ = object;
   transfer_ = transfer;
   data_.clear();
   offset_ = 0;
   announced_.reset();
   toggle_ = 0;
-  other_.reset();
-  if (transfer == Transfer::block)
-    finish(
-        fail(error(Errc::usage, "there are no block transfers over EtherCAT", "leave --transfer block out")));
+  if (transfer != Transfer::block) return true;
+  finish(
+      fail(error(Errc::usage, "there are no block transfers over EtherCAT", "leave --transfer block out")));
+  return false;
 }
 
-void CoeClient::start_upload(ObjectAddress object, TimePoint now, Transfer transfer, bool complete) {
-  begin(object, transfer);
-  if (result_) return;
-  const auto request = static_cast<std::uint8_t>(0x40U | (complete ? kCompleteAccess : 0U));
-  send(sdo_message(request, object, 0), State::upload_initiate, now);
+void CoeClient::start_upload(ObjectAddress object, TimePoint now, Transfer transfer, bool complete,
+                             bool again) {
+  if (!begin(object, transfer, again)) return;
+  complete_ = complete;
+  if (!core_.is_clear(object)) return check(now);
+  begin_upload(now);
+}
+
+void CoeClient::begin_upload(TimePoint now) {
+  core_.ask_read(object_, now);
+  const auto request = static_cast<std::uint8_t>(0x40U | (complete_ ? kCompleteAccess : 0U));
+  send(sdo_message(request, object_, 0), State::upload_initiate, now);
 }
 
 void CoeClient::start_download(ObjectAddress object, Bytes data, TimePoint now, Transfer transfer,
                                bool complete) {
-  begin(object, transfer);
-  if (result_) return;
+  if (!begin(object, transfer, false)) return;
   data_ = std::move(data);
   announced_ = data_.size();
   const bool fits = !data_.empty() && data_.size() <= 4;
@@ -59,6 +67,7 @@ void CoeClient::start_download(ObjectAddress object, Bytes data, TimePoint now, 
     return finish(
         fail(error(Errc::usage, fmt::format("{} bytes do not fit into one expedited message", data_.size()),
                    "leave --transfer expedited out")));
+  core_.ask_write(object, data_, now);
   const auto access = complete ? kCompleteAccess : 0U;
   if (fits && !complete && transfer != Transfer::segmented) {
     const auto request = static_cast<std::uint8_t>(0x23U | (4U - data_.size()) << 2U);
@@ -74,15 +83,18 @@ void CoeClient::start_download(ObjectAddress object, Bytes data, TimePoint now, 
 }
 
 void CoeClient::on_message(ByteSpan message, TimePoint now) {
-  if (state_ == State::idle || message.size() <= kCoeHeader) return;
+  if (message.size() <= kCoeHeader) return;
   const auto service = coe_service(message);
   // Some servers abort in the service of requests.
   const bool aborts = specifier(message) == canopen::kSdoAbortCommand &&
                       (service == CoeService::sdo_response || service == CoeService::sdo_request);
+  if (!aborts && service != CoeService::sdo_response) return;
+  const bool is_anonymous = state_ == State::upload_segment || state_ == State::download_segment;
+  if (!is_anonymous && !is_first_answer(message, now)) return;
   if (aborts) return on_abort(message);
-  if (service != CoeService::sdo_response) return;
   switch (state_) {
-    case State::idle: return;
+    case State::idle:
+    case State::resync: return;
     case State::upload_initiate: return on_upload_initiate(message, now);
     case State::upload_segment: return on_upload_segment(message, now);
     case State::download_initiate: return on_download_initiate(message, now);
@@ -91,9 +103,10 @@ void CoeClient::on_message(ByteSpan message, TimePoint now) {
 }
 
 void CoeClient::on_abort(ByteSpan message) {
-  if (message.size() < kInitiate || sdo_object(message) != object_) return;
+  if (message.size() < kInitiate) return;
   const auto code = sdo_data(message);
-  const bool writes = state_ == State::download_initiate || state_ == State::download_segment;
+  if (sdo_object(message) != object_) return core_.note(command(message), sdo_object(message), code);
+  const bool writes = state_ != State::upload_initiate && state_ != State::upload_segment;
   auto refused =
       error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
             coe_abort_hint(code, object_, writes));
@@ -105,7 +118,6 @@ void CoeClient::on_upload_initiate(ByteSpan message, TimePoint now) {
   if (message.size() < kInitiate)
     return abort(sdo_abort::kCommand, Errc::protocol,
                  fmt::format("its answer has {} bytes instead of {}", message.size(), kInitiate));
-  if (sdo_object(message) != object_ || is_late(message)) return;
   if (specifier(message) != 0x40)
     return abort(sdo_abort::kCommand, Errc::protocol,
                  fmt::format("it answered a read with command 0x{:02X}", command(message)));
@@ -162,7 +174,6 @@ void CoeClient::on_download_initiate(ByteSpan message, TimePoint now) {
   if (message.size() < kInitiate)
     return abort(sdo_abort::kCommand, Errc::protocol,
                  fmt::format("its answer has {} bytes instead of {}", message.size(), kInitiate));
-  if (sdo_object(message) != object_ || is_late(message)) return;
   if (specifier(message) != 0x60)
     return abort(sdo_abort::kCommand, Errc::protocol,
                  fmt::format("it answered a write with command 0x{:02X}", command(message)));
@@ -181,14 +192,6 @@ void CoeClient::on_download_segment(ByteSpan message, TimePoint now) {
   if (offset_ == data_.size()) return finish(Bytes{});
   toggle_ ^= kToggleBit;
   send_segment(now);
-}
-
-/// A read answered as a write, or the other way round: the answer to an earlier request for the same object.
-bool CoeClient::is_late(ByteSpan message) {
-  const auto other = state_ == State::upload_initiate ? 0x60U : 0x40U;
-  if (specifier(message) != other) return false;
-  other_ = command(message);
-  return true;
 }
 
 void CoeClient::request_segment(TimePoint now) {
@@ -221,30 +224,22 @@ void CoeClient::on_failure(Errc code, std::string what, std::string hint) {
   finish(fail(error(code, std::move(what), std::move(hint))));
 }
 
-void CoeClient::on_time(TimePoint now) {
-  if (state_ == State::idle || now < deadline_) return;
-  const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
-  abort(sdo_abort::kTimeout, Errc::timeout,
-        fmt::format("no answer within {} ms{}", waited,
-                    other_ ? fmt::format(", only one to another request (command 0x{:02X})", *other_) : ""));
-}
-
 void CoeClient::send(Bytes message, State next, TimePoint now) {
   tx_ = std::move(message);
   state_ = next;
-  deadline_ = now + timeout_;
+  core_.wait(now);
 }
 
 void CoeClient::abort(std::uint32_t code, Errc errc, std::string why, std::string hint) {
+  const auto asked = state_ == State::resync ? check_ : object_;
   finish(fail(error(errc, std::move(why), std::move(hint))));
-  tx_ = sdo_message(canopen::kSdoAbortCommand, object_, code);
+  tx_ = sdo_message(canopen::kSdoAbortCommand, asked, code);
 }
 
 void CoeClient::finish(Result<Bytes> result) {
   state_ = State::idle;
-  deadline_ = kNever;
   tx_.reset();
-  result_ = std::move(result);
+  core_.finish(std::move(result));
 }
 
 Error CoeClient::error(Errc code, std::string message, std::string hint) const {
@@ -257,6 +252,6 @@ std::size_t CoeClient::transferred() const {
 }
 
 std::optional<Bytes> CoeClient::take_message() { return std::exchange(tx_, std::nullopt); }
-std::optional<Result<Bytes>> CoeClient::take_result() { return std::exchange(result_, std::nullopt); }
+std::optional<Result<Bytes>> CoeClient::take_result() { return core_.take_end(); }
 
 }  // namespace servoctl::ethercat

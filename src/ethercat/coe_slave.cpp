@@ -21,7 +21,10 @@ void CoeSlave::take_events(TimePoint now) {
   const auto for_info = [&](bool early) { return !info_.may_send() && !(early && owner_ == Owner::info); };
   while (const auto event = mailbox_.take_event()) {
     if (const auto* message = std::get_if<Mailbox::Message>(&*event)) {
-      if (for_client(message->early)) client_.on_message(message->data, now);
+      if (for_client(message->early))
+        client_.on_message(message->data, now);
+      else
+        client_.on_early(message->data, now);
       if (for_info(message->early)) info_.on_message(message->data, now);
     } else if (const auto* refusal = std::get_if<Mailbox::Refusal>(&*event)) {
       // It does not say whose message it is about: that of the last one.

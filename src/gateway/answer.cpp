@@ -83,10 +83,14 @@ std::string error_line(std::uint32_t sequence, Code code, std::string_view why) 
 }
 
 std::string failure_line(std::uint32_t sequence, const Error& error) {
-  const auto code =
-      error.code == Errc::timeout ? std::optional(canopen::sdo_abort::kTimeout) : error.abort_code;
+  auto code = error.abort_code;
+  if (error.code == Errc::timeout) code = canopen::sdo_abort::kTimeout;
+  if (error.code == Errc::protocol) code = canopen::sdo_abort::kCommand;
   if (!code) return error_line(sequence, Code::internal_state, error.message);
-  return fmt::format("[{}] ERROR:0x{:08X} #{}.\r\n", sequence, *code, canopen::sdo_abort_text(*code));
+  auto why = error.code == Errc::protocol ? printable(error.message) : canopen::sdo_abort_text(*code);
+  // What is known of a node that did not answer in time is what to do about it.
+  if (error.code == Errc::timeout && !error.hint.empty()) why += ": " + printable(error.hint);
+  return fmt::format("[{}] ERROR:0x{:08X} #{}.\r\n", sequence, *code, why);
 }
 
 std::optional<Answer> parse_answer(std::string_view line) {

@@ -29,7 +29,8 @@ std::string ok_line(std::uint32_t sequence);
 std::string value_line(std::uint32_t sequence, std::string_view value);
 /// `[1] ERROR:101 #Syntax error: why`
 std::string error_line(std::uint32_t sequence, Code code, std::string_view why = {});
-/// Of a transfer: the abort code where the node gave one, `0x05040000` where it did not answer, else 102.
+/// Of a transfer: the abort code where the node gave one, `0x05040000` where it did not answer,
+/// `0x05040001` where its answer was none, else 102.
 std::string failure_line(std::uint32_t sequence, const Error& error);
 
 /// A line of an answer taken apart, as CANopenNode, lely-core and the above write them.

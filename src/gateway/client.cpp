@@ -3,9 +3,16 @@
 #include <fmt/format.h>
 
 namespace servoctl::gateway {
+namespace {
+
+/// So many times as long as nothing of it may come, an answer may take in all.
+constexpr int kMostPatience = 100;
+
+}  // namespace
 
 std::string Client::start(std::string_view request, TimePoint now, Duration patience) {
   patience_ = patience;
+  begun_ = now;
   deadline_ = now + patience;
   outcome_.reset();
   return fmt::format("[{}] {}\r\n", ++sequence_, request);
@@ -21,10 +28,18 @@ void Client::reset() {
 
 void Client::on_bytes(std::string_view bytes, TimePoint now) {
   if (bytes.empty()) return;
-  if (busy()) deadline_ = now + patience_;
   bytes_ += bytes;
   take_lines(bare_ ? "\n" : "\r\n");
+  if (busy() && begins_the_answer())
+    deadline_ = std::min(now + patience_, begun_ + kMostPatience * patience_);
   line_end_ = busy() && bytes_.ends_with('\n') ? now + kQuiet : kNever;
+}
+
+/// Whether what waits for the end of its line is the beginning of the answer: whatever else a gateway says
+/// keeps nobody waiting.
+bool Client::begins_the_answer() const {
+  const auto number = fmt::format("[{}]", sequence_);
+  return std::string_view(bytes_).substr(0, number.size()) == number;
 }
 
 void Client::take_lines(std::string_view end) {

@@ -25,12 +25,12 @@ class Client {
   static constexpr std::size_t kLongestAnswer = 64U << 20U;
 
   struct Outcome {
-    bool silent = false;  ///< Nothing came for as long as it was waited for.
+    bool silent = false;  ///< Nothing of the answer came for as long as it was waited for.
     Answer answer;
   };
 
   /// The line that is to be sent for this request, such as `1 4 r 0x1017 0 d`. Nothing may be under way.
-  /// `patience` is how long nothing may come.
+  /// `patience` is how long nothing of its answer may come; what else comes makes no difference.
   std::string start(std::string_view request, TimePoint now, Duration patience);
   bool busy() const { return deadline_ != kNever; }
   TimePoint deadline() const { return std::min(deadline_, line_end_); }
@@ -49,11 +49,13 @@ class Client {
   void reset();
 
  private:
+  bool begins_the_answer() const;
   void take_lines(std::string_view end);
   void on_line(std::string_view line);
 
   std::uint32_t sequence_ = 0;
   Duration patience_{};
+  TimePoint begun_{};
   TimePoint deadline_ = kNever;
   TimePoint line_end_ = kNever;  ///< When a LF alone is taken for one.
   bool bare_ = false;            ///< It is.

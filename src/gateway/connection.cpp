@@ -5,7 +5,6 @@
 #include <sys/un.h>
 
 #include <fmt/format.h>
-#include <array>
 #include <cerrno>
 #include <cstring>
 
@@ -65,15 +64,8 @@ Result<void> Connection::send(std::string_view text, TimePoint limit) {
 
 Result<void> Connection::receive(std::string& out) {
   if (tcp_) return tcp_->receive(out);
-  std::array<char, 8192> bytes;
-  for (;;) {
-    const auto count = ::recv(get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0 && errno == EAGAIN) return {};
-    if (count <= 0) return lost(place_, count < 0 ? errno : 0);
-    out.append(bytes.data(), static_cast<std::size_t>(count));
-    if (static_cast<std::size_t>(count) < bytes.size()) return {};
-  }
+  if (const auto taken = can::take_in(get(), out); !taken.there) return lost(place_, taken.error);
+  return {};
 }
 
 void Connection::send_now(std::string_view text) const noexcept {

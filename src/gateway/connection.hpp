@@ -23,7 +23,7 @@ class Connection {
   int get() const { return tcp_ ? tcp_->get() : local_.get(); }
   /// All of the text; waits for room until `limit`. Errc::bus when the connection is lost.
   Result<void> send(std::string_view text, TimePoint limit);
-  /// Adds what is there. Errc::bus when the connection is lost, or was closed.
+  /// Adds what is there, as take_in(). Errc::bus when the connection is lost, or was closed.
   Result<void> receive(std::string& out);
   /// What goes without waiting, for the very end.
   void send_now(std::string_view text) const noexcept;

@@ -116,7 +116,7 @@ std::vector<pollfd> Listener::interests(const std::function<short(int)>& events)
 
 void Listener::accept_one(std::vector<Arrival>& out) {
   Descriptor client(::accept4(socket_.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
-  if (!client || clients_.size() >= kMostClients) return;
+  if (!client || clients_.size() > kMostClients) return;
   configure(client.get());
   out.push_back({.who = ++last_, .bytes = {}, .came = true});
   clients_.emplace(last_, std::move(client));

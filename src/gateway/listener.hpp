@@ -18,7 +18,7 @@ namespace servoctl::gateway {
 /// The side that is asked: connections, each known by a number that no other ever gets.
 class Listener {
  public:
-  /// More are turned away.
+  /// One more is taken in, so that who listens decides which of them goes.
   static constexpr std::size_t kMostClients = 16;
 
   struct Arrival {

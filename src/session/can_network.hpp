@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/open_requests.hpp"
 #include "can/bus.hpp"
 #include "can/controller_report.hpp"
 #include "can/error_frame.hpp"
@@ -194,6 +195,7 @@ class CanNetwork final : public Network {
   std::optional<canopen::LssAddress> lss_selection_;
   std::vector<const OnFrame*> listeners_;
   std::array<CanObjectChannel*, 128> channels_{};  ///< The first of each node.
+  std::array<OpenRequests, 128> open_requests_;    ///< As the last channel of each node left them.
   std::deque<NodeEvent> events_;
   std::optional<can::Frame> frame_;
   /// Asking the clock costs a system call on some machines.

@@ -7,12 +7,15 @@ namespace servoctl::session {
 CanObjectChannel::CanObjectChannel(CanNetwork& network, std::uint8_t node, Duration timeout)
     : network_(&network),
       client_(node, timeout),
-      next_(std::exchange(network.channels_[node & 0x7FU], this)) {}
+      next_(std::exchange(network.channels_[node & 0x7FU], this)) {
+  client_.adopt(next_ != nullptr ? next_->client_.open_requests() : network.open_requests_[node & 0x7FU]);
+}
 
 CanObjectChannel::~CanObjectChannel() {
   auto** place = &network_->channels_[client_.node() & 0x7FU];
   while (*place != this) place = &(*place)->next_;
   *place = next_;
+  network_->open_requests_[client_.node() & 0x7FU] = client_.open_requests();
 }
 
 Result<void> CanObjectChannel::on_time(TimePoint now) {
@@ -21,6 +24,8 @@ Result<void> CanObjectChannel::on_time(TimePoint now) {
     const auto frame = client_.take_frame();
     if (!frame) break;
     if (auto sent = network_->send(*frame); !sent) return sent;
+    for (auto* other = network_->channels_[client_.node() & 0x7FU]; other != nullptr; other = other->next_)
+      if (other != this) other->client_.overhear(*frame, now);
   }
   stirred_ = false;
   return {};
@@ -31,7 +36,7 @@ void CanObjectChannel::start_upload(ObjectAddress object, TimePoint now, canopen
   object_ = object;
   emergency_id_.reset();
   stirred_ = true;
-  client_.start_upload(object, now, transfer, size);
+  client_.start_upload(object, now, transfer, size, std::exchange(again_, false));
 }
 
 void CanObjectChannel::start_download(ObjectAddress object, Bytes data, TimePoint now,

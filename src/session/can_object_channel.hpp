@@ -24,6 +24,7 @@ class CanObjectChannel final : public ObjectChannel {
   void set_timeout(Duration timeout) override { client_.set_timeout(timeout); }
   void start_upload(ObjectAddress object, TimePoint now, canopen::Transfer transfer,
                     std::size_t size) override;
+  void try_again() override { again_ = true; }
   void start_download(ObjectAddress object, Bytes data, TimePoint now, canopen::Transfer transfer) override;
   Result<void> on_time(TimePoint now) override;
   /// The network learns from 1014h, read or written, under which CAN-ID the node sends emergencies.
@@ -40,6 +41,7 @@ class CanObjectChannel final : public ObjectChannel {
   canopen::SdoClient client_;
   ObjectAddress object_;                       ///< Of the present transfer.
   std::optional<std::uint32_t> emergency_id_;  ///< What it writes, or 1014h was read to hold.
+  bool again_ = false;                         ///< As try_again() says.
   CanObjectChannel* next_;                     ///< Another of the same node.
 };
 

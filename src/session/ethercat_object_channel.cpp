@@ -62,10 +62,11 @@ void EtherCatObjectChannel::start_mailbox(TimePoint now) {
   node_->owner = this;
   way_ = Way::mailbox;
   client.set_timeout(timeout_);
+  const bool again = std::exchange(again_, false);
   if (data_)
     client.start_download(object_, std::move(*data_), now, transfer_);
   else
-    client.start_upload(object_, now, transfer_);
+    client.start_upload(object_, now, transfer_, false, again);
 }
 
 bool EtherCatObjectChannel::start_image() {

@@ -20,6 +20,7 @@ class EtherCatObjectChannel final : public ObjectChannel {
   void set_timeout(Duration timeout) override { timeout_ = timeout; }
   void start_upload(ObjectAddress object, TimePoint now, canopen::Transfer transfer,
                     std::size_t size) override;
+  void try_again() override { again_ = true; }
   void start_download(ObjectAddress object, Bytes data, TimePoint now, canopen::Transfer transfer) override;
   Result<void> on_time(TimePoint now) override;
   std::optional<Result<Bytes>> take_result() override;
@@ -51,6 +52,7 @@ class EtherCatObjectChannel final : public ObjectChannel {
   Way way_ = Way::none;
   ObjectAddress object_;
   std::optional<Bytes> data_;
+  bool again_ = false;  ///< As try_again() says.
   canopen::Transfer transfer_ = canopen::Transfer::automatic;
   TimePoint until_ = kNever;
   ethercat::ProcessImage::Cycle cycle_ = 0;

@@ -7,6 +7,7 @@
 #include <array>
 
 #include "base/printable.hpp"
+#include "base/signal_wait.hpp"
 #include "session/gateway_object_channel.hpp"
 
 namespace servoctl::session {
@@ -185,8 +186,10 @@ Result<gateway::Answer> GatewayNetwork::ask(std::string_view request, Duration p
     if (const auto stepped = step(client_.deadline()); !stepped) return fail(stepped.error());
   own_.reset();
   if (const auto sent = start(request, patience); !sent) return fail(sent.error());
+  const auto signals = signals_noted();
   while (client_.busy()) {
-    if (cancelled_ && cancelled_()) return fail(Errc::interrupted, "interrupted");
+    const bool is_cancelled = cancelled_ ? cancelled_() : signals_noted() != signals;
+    if (is_cancelled) return fail(Errc::interrupted, "interrupted");
     if (const auto stepped = step(client_.deadline()); !stepped) return fail(stepped.error());
   }
   if (!own_) return fail(Errc::timeout, fmt::format("{} does not answer", url_));

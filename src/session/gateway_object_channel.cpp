@@ -15,6 +15,9 @@ constexpr Duration kOfTheGateway = std::chrono::seconds(10);
 /// By segments at 10 kbit/s.
 constexpr Duration kOfAByte = std::chrono::milliseconds(4);
 
+/// Codes of the transfer itself (CiA 301, 7.2.4.3.17: 0503h and 0504h): what became of a write is not known.
+bool is_broken_transfer(std::uint32_t abort) { return abort >> 16U == 0x0503 || abort >> 16U == 0x0504; }
+
 }  // namespace
 
 GatewayObjectChannel::~GatewayObjectChannel() { network_->leave(*this); }
@@ -55,11 +58,30 @@ Duration GatewayObjectChannel::patience() const {
   return timeout_ + kOfTheGateway + static_cast<Duration::rep>(request_.size()) * kOfAByte;
 }
 
+namespace {
+
+/// What the gateway says behind an abort code beside what that says; empty where that is all.
+std::string told_beside(std::string_view text, std::string_view said) {
+  if (text.starts_with('#')) text.remove_prefix(1);
+  if (text.ends_with('.')) text.remove_suffix(1);
+  if (text.starts_with(said)) text.remove_prefix(said.size());
+  if (text.starts_with(": ")) text.remove_prefix(2);
+  return text.empty() ? std::string() : fmt::format("the gateway says: {}", printable(text));
+}
+
+}  // namespace
+
 Error GatewayObjectChannel::refusal(const gateway::Answer& answer) const {
   if (answer.kind == gateway::Answer::Kind::abort) {
+    const auto said = canopen::sdo_abort_text(answer.number);
+    const auto more = told_beside(answer.text, said);
     if (answer.number == canopen::sdo_abort::kTimeout)
       return drive_error(Errc::timeout, node_, object_,
-                         fmt::format("no answer within {}", to_string(timeout_)));
+                         fmt::format("no answer within {}", to_string(timeout_)), more);
+    if (is_broken_transfer(answer.number))
+      return drive_error(Errc::protocol, node_, object_,
+                         fmt::format("the transfer broke off: {} (abort 0x{:08X})", said, answer.number),
+                         more);
     auto error = drive_error(
         Errc::sdo_abort, node_, object_,
         fmt::format("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(answer.number), answer.number),

@@ -48,6 +48,14 @@ bool GatewayServer::is_done(int who) const {
   return it.ended && !it.order && it.out.empty() && !it.in.has_line();
 }
 
+bool GatewayServer::may_go(int who) const {
+  const auto client = clients_.find(who);
+  if (client == clients_.end()) return true;
+  const bool enabled = std::any_of(energised_.begin(), energised_.end(),
+                                   [&](const auto& drive) { return drive.second == who; });
+  return !enabled && !client->second.order && client->second.out.empty() && !client->second.in.has_line();
+}
+
 std::set<std::uint8_t> GatewayServer::energised() const {
   std::set<std::uint8_t> out;
   for (const auto& [node, who] : energised_) out.insert(node);

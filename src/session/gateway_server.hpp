@@ -62,6 +62,8 @@ class GatewayServer {
   std::string& output(int who) { return clients_[who].out; }
   /// It ended, and has all its answers.
   bool is_done(int who) const;
+  /// Whether nothing is lost when it goes: it waits for no answer, and enabled no drive.
+  bool may_go(int who) const;
   /// The drives that clients enabled.
   std::set<std::uint8_t> energised() const;
 

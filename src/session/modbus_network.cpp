@@ -65,9 +65,30 @@ TimePoint ModbusNetwork::next_event() const {
   return out;
 }
 
+/// What answers a request that was given up answers a further try of it as well.
+bool ModbusNetwork::hand_over_late() {
+  for (auto* channel : waiting_) {
+    auto late = channel->is_again() ? client_.take_late(channel->node(), channel->pdu()) : std::nullopt;
+    if (!late) continue;
+    std::erase(waiting_, channel);
+    channel->on_outcome(*late);
+    return true;
+  }
+  return false;
+}
+
+/// Two registers: the answer is longer than that to a request for one.
+Bytes ModbusNetwork::check_for(const ModbusObjectChannel& channel) const {
+  const auto& pdu = channel.pdu();
+  const bool asks_for_two = pdu.size() == 5 && modbus::load_be16(ByteSpan(pdu).subspan(3)) == 2;
+  return modbus::read_request(modbus::Function::read_registers, presence_register(channel.node()),
+                              asks_for_two ? 3 : 2);
+}
+
 /// The first in the row to whose unit the line is free: one that is late keeps nobody else waiting.
 Result<void> ModbusNetwork::pump() {
   if (client_.busy() || waiting_.empty()) return {};
+  if (hand_over_late()) return {};
   const auto time = now();
   const auto next = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto* channel) {
     return client_.free_at(channel->node()) <= time;
@@ -75,7 +96,8 @@ Result<void> ModbusNetwork::pump() {
   if (next == waiting_.end()) return {};
   asking_ = *next;
   waiting_.erase(next);
-  const auto bytes = client_.start(asking_->node(), asking_->pdu(), time, asking_->timeout());
+  const auto bytes = client_.start(asking_->node(), asking_->pdu(), time, asking_->timeout(),
+                                   {asking_->is_again(), check_for(*asking_)});
   const auto sent = port_->send(bytes);
   if (!sent) begin_anew();
   return sent;
@@ -107,6 +129,11 @@ Result<bool> ModbusNetwork::step(TimePoint deadline) {
   }
   client_.on_bytes(*bytes, stepped_at_);
   client_.on_time(stepped_at_);
+  if (const auto behind = client_.take_bytes(stepped_at_); !behind.empty())
+    if (const auto sent = port_->send(behind); !sent) {
+      begin_anew();
+      return fail(sent.error());
+    }
   if (const auto sound = check_stream(); !sound) return fail(sound.error());
   const auto outcome = client_.take_outcome();
   if (outcome && asking_ != nullptr) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/duration.hpp"
+#include "base/open_requests.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::session {
@@ -96,7 +97,10 @@ Error ModbusObjectChannel::silence(const Outcome& outcome) const {
       drive_error(Errc::timeout, node_, object_, fmt::format("no answer within {}", to_string(timeout_)));
   if (way_ == Way::request || way_ == Way::presence)
     out = drive_error(Errc::timeout, node_, fmt::format("no answer within {}", to_string(timeout_)));
-  if (outcome.other_unit) {
+  if (outcome.late) {
+    out.message += lateness_text(*outcome.late);
+    out.hint = lateness_hint(*outcome.late);
+  } else if (outcome.other_unit) {
     out.message += fmt::format("; unit {} answered instead", *outcome.other_unit);
     out.hint = "do two units, or two masters, talk on this line?";
   } else if (outcome.damaged > 0) {
@@ -140,6 +144,7 @@ void ModbusObjectChannel::on_outcome(const Outcome& outcome) {
 
 void ModbusObjectChannel::finish(Result<Bytes> result) {
   result_ = std::move(result);
+  again_ = false;
   pdu_.clear();
 }
 

@@ -21,6 +21,7 @@ class ModbusObjectChannel final : public ObjectChannel {
   void set_timeout(Duration timeout) override { timeout_ = timeout; }
   void start_upload(ObjectAddress object, TimePoint now, canopen::Transfer transfer,
                     std::size_t size) override;
+  void try_again() override { again_ = true; }
   void start_download(ObjectAddress object, Bytes data, TimePoint now, canopen::Transfer transfer) override;
   /// Any request; the result is the PDU of its answer.
   void start_request(Bytes pdu);
@@ -34,6 +35,8 @@ class ModbusObjectChannel final : public ObjectChannel {
   std::uint8_t node() const { return node_; }
   const Bytes& pdu() const { return pdu_; }
   Duration timeout() const { return timeout_; }
+  /// Whether what is asked is a further try.
+  bool is_again() const { return again_; }
   void on_outcome(const modbus::Outcome& outcome);
   /// The line is lost: what was under way ends without a result.
   void forget();
@@ -54,7 +57,8 @@ class ModbusObjectChannel final : public ObjectChannel {
   Duration timeout_;
   Way way_ = Way::read;
   ObjectAddress object_;
-  Bytes pdu_;  ///< Empty while nothing is under way.
+  bool again_ = false;  ///< As try_again() says, until the transfer has ended.
+  Bytes pdu_;           ///< Empty while nothing is under way.
   std::optional<Result<Bytes>> result_;
 };
 

@@ -47,6 +47,9 @@ class ObjectChannel {
   /// has, if that is known and needed, else 0. Sends nothing yet: on_time() does.
   virtual void start_upload(ObjectAddress object, TimePoint now, canopen::Transfer transfer,
                             std::size_t size) = 0;
+  /// The next start_upload() is a further try of the read before it, which was not answered in time: a late
+  /// answer to that one is an answer to it as well. Where this is not said, a late answer is none.
+  virtual void try_again() {}
   /// Writes an object; else as start_upload().
   virtual void start_download(ObjectAddress object, Bytes data, TimePoint now,
                               canopen::Transfer transfer) = 0;

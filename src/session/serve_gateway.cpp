@@ -13,6 +13,8 @@ namespace {
 /// What moves in a simulation is looked after so often, whoever is silent.
 constexpr Duration kLongestWait = std::chrono::milliseconds(250);
 constexpr Duration kPatienceWithReaders = std::chrono::seconds(30);
+/// Who has said nothing for so long makes room for another.
+constexpr Duration kIdle = std::chrono::seconds(10);
 
 class GatewayLoop {
  public:
@@ -25,11 +27,13 @@ class GatewayLoop {
   struct Reader {
     std::size_t unread = 0;
     TimePoint since{};
+    TimePoint heard{};  ///< When something came from it last; TimePoint{}: nothing has.
   };
 
   Result<void> serve_network();
   void send_answers();
   void lose(int who);
+  void make_room(int newcomer);
   void wait();
   void take_in(const gateway::Listener::Arrival& arrival);
 
@@ -74,12 +78,29 @@ void GatewayLoop::send_answers() {
   for (const int who : gone) lose(who);
 }
 
+/// The one that has been idle longest goes; where all are busy, the newcomer does.
+void GatewayLoop::make_room(int newcomer) {
+  if (readers_.size() <= gateway::Listener::kMostClients) return;
+  int idlest = newcomer;
+  auto heard = steady_now() - kIdle;
+  for (const auto& [who, reader] : readers_) {
+    if (who == newcomer || reader.heard >= heard || !server_->may_go(who)) continue;
+    idlest = who;
+    heard = reader.heard;
+  }
+  lose(idlest);
+}
+
 void GatewayLoop::take_in(const gateway::Listener::Arrival& arrival) {
   if (arrival.came) {
-    readers_[arrival.who] = {0, steady_now()};
+    readers_[arrival.who] = {0, steady_now(), {}};
     server_->on_client(arrival.who);
+    make_room(arrival.who);
   }
-  if (!arrival.bytes.empty()) server_->on_bytes(arrival.who, arrival.bytes);
+  if (!arrival.bytes.empty()) {
+    readers_[arrival.who].heard = steady_now();
+    server_->on_bytes(arrival.who, arrival.bytes);
+  }
   if (arrival.ended) server_->on_end(arrival.who);
   if (arrival.lost) lose(arrival.who);
 }

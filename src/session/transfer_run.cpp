@@ -127,6 +127,7 @@ void TransferRun::finish(Lane& channel, Result<Bytes> result) {
   const bool silent = !result && result.error().code == Errc::timeout;
   if (silent && !request.data && channel.tries < session_->options().retries) {
     ++channel.tries;
+    channel.objects->try_again();
     // A server that knows no block transfer may meet its request with silence.
     return ask(channel, request.transfer == canopen::Transfer::domain ? canopen::Transfer::automatic
                                                                       : request.transfer);

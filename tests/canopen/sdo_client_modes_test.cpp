@@ -253,7 +253,7 @@ TEST_F(SdoClientModeTest, NamesAnotherMasterWhenNoAnswerComes) {
   EXPECT_TRUE(client.busy());
   play(client, now, {"+ 500ms", "> 602#8000200100000405"});
   EXPECT_EQ(result().error().hint, "another master is also using SDO with this node");
-  upload({"> 602#4000200100000000", "+ 500ms", "> 602#8000200100000405"});
+  upload({"> 602#4000100000000000", "+ 500ms", "> 602#8000100000000405"});
   EXPECT_EQ(result().error().hint, "");
   download(1, Transfer::automatic, {"> 602#2F00200101000000"});
   tell("602#4000100000000000");

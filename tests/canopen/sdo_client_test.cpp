@@ -181,10 +181,10 @@ TEST_F(SdoClientTest, AbortsWhenTheToggleBitDoesNotAlternate) {
 }
 
 TEST_F(SdoClientTest, AbortsOnACommandThatIsNoAnswer) {
-  upload({0x1018, 1}, {"> 602#4018100100000000", "< 582#6018100100000000", "> 602#8018100101000405"});
-  expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a read with command 0x60");
-  download({0x1018, 1}, {1}, {"> 602#2F18100101000000", "< 582#4318100100000000", "> 602#8018100101000405"});
-  expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a write with command 0x43");
+  upload({0x1018, 1}, {"> 602#4018100100000000", "< 582#2018100100000000", "> 602#8018100101000405"});
+  expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a read with command 0x20");
+  download({0x1018, 1}, {1}, {"> 602#2F18100101000000", "< 582#2018100100000000", "> 602#8018100101000405"});
+  expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a write with command 0x20");
   upload({0x1018, 1}, {"> 602#4018100100000000", "< 582#4118100108000000", "> 602#6000000000000000",
                        "< 582#2000000000000000", "> 602#8018100101000405"});
   expect_failure(Errc::protocol, "node 2, object 0x1018:1: it answered a segment request with command 0x20");

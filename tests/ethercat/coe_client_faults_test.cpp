@@ -76,9 +76,9 @@ TEST_F(CoeClientTest, TheLateAnswerToARequestOfTheOtherKindIsNotThatOfThisOne) {
   EXPECT_EQ(data(), "");
   upload({0x6060, 0},
          {"> 00204060600000000000", "< 00306060600000000000", "+ 500ms", "> 00208060600000000405"});
-  expect_failure(
-      Errc::timeout,
-      "node 2, object 0x6060:0: no answer within 500 ms, only one to another request (command 0x60)");
+  expect_failure(Errc::protocol,
+                 "node 2, object 0x6060:0: no answer within 500 ms; it answered with command 0x60 for object "
+                 "0x6060:0");
 }
 
 TEST_F(CoeClientTest, AbortsWhenTheToggleBitDoesNotAlternate) {

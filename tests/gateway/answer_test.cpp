@@ -19,7 +19,8 @@ TEST(GatewayAnswer, IsWrittenAsCanOpenNodeDoes) {
   refused.abort_code = 0x0602'0000;
   EXPECT_TRUE(failure_line(7, refused).starts_with("[7] ERROR:0x06020000 #")) << failure_line(7, refused);
   EXPECT_TRUE(failure_line(7, make_error(Errc::timeout, "no")).starts_with("[7] ERROR:0x05040000 #"));
-  EXPECT_TRUE(failure_line(7, make_error(Errc::protocol, "odd")).starts_with("[7] ERROR:102 #"));
+  EXPECT_TRUE(failure_line(7, make_error(Errc::protocol, "odd")).starts_with("[7] ERROR:0x05040001 #odd"));
+  EXPECT_TRUE(failure_line(7, make_error(Errc::refused, "odd")).starts_with("[7] ERROR:102 #"));
 }
 
 void expect_answer(std::string_view line, AnswerKind kind, std::uint32_t sequence, std::uint32_t number,

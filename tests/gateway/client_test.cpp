@@ -70,6 +70,31 @@ TEST_F(GatewayClientTest, BytesOfALongAnswerKeepItWaiting) {
   EXPECT_EQ(outcome().size(), 40U);
 }
 
+TEST_F(GatewayClientTest, WhatIsNoAnswerKeepsNobodyWaiting) {
+  start();
+  const auto until = client.deadline();
+  for (int i = 0; i < 20; ++i) {
+    now += 100ms;
+    client.on_bytes("1 4 BOOT_UP\r\n# ", now);
+  }
+  EXPECT_LE(client.deadline(), until);
+  client.on_time(now);
+  const auto out = client.take_outcome();
+  ASSERT_TRUE(out);
+  EXPECT_TRUE(out->silent);
+}
+
+TEST_F(GatewayClientTest, AnAnswerWithoutAnEndIsNotWaitedForWithoutEnd) {
+  start();
+  client.on_bytes("[1] A", now);
+  for (int i = 0; i < 2000 && client.busy(); ++i) {
+    now += 900ms;
+    client.on_bytes("A", now);
+    client.on_time(now);
+  }
+  EXPECT_FALSE(client.busy());
+}
+
 TEST_F(GatewayClientTest, AnAnswerThatBreaksOffIsNoValue) {
   start();
   client.on_bytes("[1] AAAAAAAA\n...ERROR:0x05040000 #SDO protocol timed out.\r\n", now);

@@ -65,7 +65,7 @@ done
 
 # A simulated drive is a model without a wire and ports around it: of canopen the model includes what knows no frame, of sim nothing
 # that does. What is new in sim is the model's until it is named here.
-wire='can_port|cell|communication_guard|device|emergency_producer|esc_[a-z_]+|heartbeat_consumer|lss_slave|modbus_cell|modbus_port|modbus_unit|pdo_engine|pdo_guard|sim_bus|sim_drive|sim_port'
+wire='answer_way|can_port|cell|communication_guard|device|emergency_producer|esc_[a-z_]+|heartbeat_consumer|lss_slave|modbus_cell|modbus_port|modbus_unit|pdo_engine|pdo_guard|sim_bus|sim_drive|sim_port'
 frameless='node_id|object_store|sdo_abort'
 model=$(find src/sim -name '*.?pp' | grep -vE "/($wire)\.[ch]pp$")
 grep -q 'drive_model\.hpp' <<<"$model" || { echo "src/sim/drive_model.hpp was not found: the check itself is broken"; bad=1; }

@@ -1,0 +1,119 @@
+#include "base/open_requests.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <chrono>
+#include <iterator>
+#include <utility>
+
+namespace servoctl {
+namespace {
+
+/// More than that a server that is away is not asked before it is asked something else.
+constexpr std::size_t kMostOpen = 64;
+/// What doubles an answer, a hub or a driver, does it at once.
+constexpr Duration kDouble = std::chrono::milliseconds(50);
+
+}  // namespace
+
+void OpenRequests::begin(bool again) {
+  if (!again) ++transfer_;
+}
+
+void OpenRequests::add(Request request) {
+  if (open_.size() == kMostOpen) open_.erase(open_.begin());
+  open_.push_back(request);
+}
+
+void OpenRequests::ask(AnswerForm answer, std::optional<std::uint64_t> value, TimePoint now) {
+  add({answer, value, now, transfer_});
+}
+
+void OpenRequests::overhear(AnswerForm answer, std::optional<std::uint64_t> value, TimePoint now) {
+  add({answer, value, now, 0});
+}
+
+bool OpenRequests::repeats(Answer answer, TimePoint now) {
+  const bool soon = now - std::exchange(last_at_, now) <= kDouble;
+  return std::exchange(last_, answer) == answer && soon;
+}
+
+/// Where two requests write the same, it is all the same whose confirmation came: the value was written.
+OpenRequests::Fit OpenRequests::settle(AnswerForm came, TimePoint now, bool awaited) {
+  const bool again = repeats({came, false}, now);
+  const auto has_form = [&](const Request& request) { return request.answer == came; };
+  const auto oldest = std::find_if(open_.begin(), open_.end(), has_form);
+  if (oldest == open_.end()) return Fit::none;
+  const auto other = std::find_if(oldest, open_.end(), [&](const Request& request) {
+    return has_form(request) && (!request.value || request.value != oldest->value);
+  });
+  const auto own = std::find_if(oldest, other, [&](const Request& request) {
+    return has_form(request) && request.transfer == transfer_;
+  });
+  const auto answered = own == other ? oldest : own;
+  return take(answered, now, again && !(awaited && answered->transfer == transfer_));
+}
+
+OpenRequests::Fit OpenRequests::settle_refusal(const std::function<bool(AnswerForm)>& is_refused,
+                                               TimePoint now, bool awaited) {
+  const auto oldest = std::find_if(open_.begin(), open_.end(),
+                                   [&](const Request& request) { return is_refused(request.answer); });
+  if (oldest == open_.end()) return Fit::none;
+  const bool again = repeats({oldest->answer, true}, now);
+  return take(oldest, now, again && !(awaited && oldest->transfer == transfer_));
+}
+
+OpenRequests::Fit OpenRequests::take(std::vector<Request>::iterator answered, TimePoint now, bool is_double) {
+  if (is_double) return Fit::late;
+  const auto found = *answered;
+  const auto last = std::next(answered);
+  // Whether a request of somebody else came before one of ours is not known for sure.
+  const auto is_over = [&](const Request& request) {
+    return request.answer.server == found.answer.server && (found.transfer != 0 || request.transfer == 0);
+  };
+  open_.erase(std::remove_if(open_.begin(), last, is_over), last);
+  if (found.transfer == transfer_) {
+    lateness_.reset();
+    return Fit::ours;
+  }
+  if (found.transfer != 0) lateness_ = now - found.sent;
+  return Fit::late;
+}
+
+bool OpenRequests::is_clear(AnswerForm answer) const {
+  return std::none_of(open_.begin(), open_.end(), [&](const Request& request) {
+    return request.answer == answer && request.transfer != transfer_;
+  });
+}
+
+bool OpenRequests::has(AnswerForm answer) const {
+  return std::any_of(open_.begin(), open_.end(),
+                     [&](const Request& request) { return request.answer == answer; });
+}
+
+void OpenRequests::forget_older() {
+  std::erase_if(open_, [&](const Request& request) { return request.transfer != transfer_; });
+}
+
+void OpenRequests::forget_own() {
+  std::erase_if(open_, [&](const Request& request) { return request.transfer == transfer_; });
+}
+
+std::string lateness_text(Duration late) {
+  if (late < std::chrono::milliseconds(100))
+    return fmt::format("; it answered an earlier request after {} ms", late / std::chrono::milliseconds(1));
+  return fmt::format("; it answered an earlier request after {:.1f} s",
+                     static_cast<double>(late.count()) / 1e6);
+}
+
+std::string lateness_hint(Duration late) {
+  constexpr Duration kStep = std::chrono::milliseconds(100);
+  constexpr Duration kSecond = std::chrono::seconds(1);
+  const auto step = 2 * late < kSecond ? kStep : kSecond;
+  const auto enough = (2 * late / step + 1) * step;
+  return fmt::format("the drive answers later than it is waited for: use --timeout {}{}",
+                     step == kSecond ? enough / kSecond : enough / std::chrono::milliseconds(1),
+                     step == kSecond ? "s" : "ms");
+}
+
+}  // namespace servoctl
