@@ -8,6 +8,7 @@
 #include "settings/backup_file.hpp"
 #include "settings/comparison.hpp"
 #include "settings/selection.hpp"
+#include "show/output_file.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::commands {
@@ -58,14 +59,6 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, error);
   if (error) return fail(Errc::file, fmt::format("{}: {}", folder.string(), error.message()));
   return {};
-}
-
-/// What is no backup is not replaced without a question.
-Result<void> may_replace(const Context& context, const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored) || settings::is_backup(file, context.front_end))
-    return {};
-  return context.confirm(fmt::format("Replace {}, which is no backup?", file.string()));
 }
 
 /// In which of the formats a file is that does not end as any of them.
@@ -125,7 +118,8 @@ Result<Value> run_backup(Context& context, const Arguments& arguments) {
   for (const auto node : context.nodes)
     files.push_back(many ? path / fmt::format("node-{}{}", node, settings::extension_of(format)) : path);
   for (const auto& file : files)
-    if (const auto agreed = may_replace(context, file); !agreed) return fail(agreed.error());
+    if (const auto agreed = show::may_replace(file, context.read_only, context); !agreed)
+      return fail(agreed.error());
   const auto snapshots =
       session::take_snapshots_patiently(*context.session, *context.profile, context.nodes, *wanted);
   report::Table table;
@@ -160,7 +154,7 @@ const Command kBackup{
     .summary = "Save the settings of a drive to a file",
     .details =
         "Saves parameters and writable objects, one per line; several nodes are read at the same time into a "
-        "folder, as node-N.json. A file that is there and no backup is replaced only after a question. What is "
+        "folder, as node-N.json. A file that exists is replaced only after a question. What is "
         "not a setting (commands, readings, targets) or is refused by the drive is listed with the reason. A "
         "file is written whole or not at all; where the bus is lost meanwhile it is waited for, 10 s at most, and all is "
         "read anew. JSON has identity and checksum: keep that one. A DCF (CiA 306) is "

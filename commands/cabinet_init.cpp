@@ -75,6 +75,9 @@ class Init {
   Result<std::string> take_present() {
     std::error_code ignored;
     if (!fs::exists(file_, ignored)) return std::string();
+    if (context_->read_only)
+      return fail(Errc::refused, fmt::format("{} exists, and --read-only replaces no file", file_.string()),
+                  "name a file that does not exist yet");
     const auto present = cabinet::read_cabinet(file_);
     if (!present) return fail(present.error());
     for (const auto& bus : present->buses)

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/shared_profile.hpp"
@@ -30,6 +32,8 @@ Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
                    {"files", "", report::Show::json}};
   for (const auto& family : drive::find_families(context.drive_folders)) {
     const auto rules = drive::load_rules(family);
+    if (!rules && rules.error().code == Errc::refused)
+      context.notices.push_back(fmt::format("{}; {}", rules.error().message, rules.error().hint));
     const auto name = rules ? rules->name : std::string();
     const auto name_zh = rules ? rules->name_zh : std::string();
     table.rows.push_back({family.name, report::text_or_null(rules ? rules->vendor : std::string()),

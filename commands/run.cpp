@@ -17,6 +17,9 @@ constexpr Parameter kRunParameters[] = {
     {.name = "--frames",
      .help = "with --dry-run: the frames of every line, for the present state of the drives",
      .kind = Kind::flag},
+    {.name = "--restricted",
+     .help = "only this bus and files below the folder of FILE; `--yes` in the file does not count",
+     .kind = Kind::flag},
     {.name = "--check", .help = "check all lines without a bus, run none", .kind = Kind::flag},
 };
 
@@ -41,7 +44,9 @@ const Command kRun{
         "all lines. Errors in any line are reported before the first one is run; --dry-run shows all lines "
         "with their variables filled in and sends nothing; with --frames every line that changes a drive "
         "also shows its frames, as its own --dry-run would, or why it would be refused, against the drives "
-        "as they are before the first line. `servoctl -` reads standard input.",
+        "as they are before the first line. --restricted is for a file of somebody else: its lines reach no other "
+        "bus than that of the run (without --bus: those of the cabinet file), read and write no file outside of the folder of the file, serve no bus to others and "
+        "change no interface. `servoctl -` reads standard input.",
     .parameters = kRunParameters,
     .examples = kRunExamples,
     .of_front_end = true,

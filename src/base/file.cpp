@@ -17,6 +17,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/found_file.hpp"
 #include "base/number.hpp"
 #include "base/regular_files.hpp"
 #include "base/text.hpp"
@@ -77,6 +78,7 @@ std::optional<int> own_descriptor(const fs::path& path) {
 /// Follows the links of the last part, to a file that does not exist as well.
 Result<Target> target_of(const fs::path& path) {
   constexpr int kMostLinks = 40;
+  if (const auto links = check_links(path); !links) return fail(links.error());
   Target out{.path = path};
   std::error_code error;
   for (int links = 0;; ++links) {

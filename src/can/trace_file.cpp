@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <utility>
 
+#include "base/found_file.hpp"
+
 namespace servoctl::can {
 namespace {
 
@@ -28,6 +30,7 @@ std::string left_out_words(std::size_t frames, std::string_view file) {
 /// Never waits for a reader: neither here nor when it is written.
 Result<TraceFile> TraceFile::open(const std::filesystem::path& file, TraceFailed failed) {
   constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+  if (const auto links = check_links(file); !links) return fail(links.error());
   Descriptor log(::open(file.c_str(), kFlags, 0666));
   if (log) return TraceFile(std::move(log), file.string(), std::move(failed));
   if (errno == ENXIO)

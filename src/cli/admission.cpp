@@ -5,6 +5,7 @@
 
 #include "base/object_address.hpp"
 #include "base/text.hpp"
+#include "cli/restriction.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::cli {
@@ -17,6 +18,8 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
   if (command.of_front_end)
     return fail(Errc::usage, fmt::format("'{}' is not allowed in a batch file", command.path),
                 "`for` repeats lines; a script runs several files");
+  if (const auto* restriction = Restriction::current())
+    if (const auto allowed = restriction->check_words(command, arguments); !allowed) return allowed;
   // A command that asks for more than reading is refused as a whole, before anything is opened.
   const auto effect = command.effect_with(arguments);
   if (settings.read_only && effect >= Effect::links && !settings.dry_run)

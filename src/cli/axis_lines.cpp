@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/found_file.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "session/open_bus.hpp"
@@ -105,17 +106,28 @@ Result<void> check_plain(const Cabinet& cabinet, const cabinet::Bus& bus, const 
       fmt::format("add --bus {} ({}, by {}), or name the axes", bus.name, bus.url, cabinet.file.string()));
 }
 
+/// It sets bus, family and limits of lines that do not name it.
+Result<void> check_cabinet_found(const std::filesystem::path& file) {
+  return check_found_file(file,
+                          fmt::format("nothing of this cabinet file was used; if you trust it, name it: "
+                                      "--cabinet {0}, or SERVOCTL_CABINET={0}",
+                                      file.string()));
+}
+
 }  // namespace
 
 Result<const Cabinet*> CabinetHolder::get(const Settings& settings) {
   namespace fs = std::filesystem;
   std::error_code error;
   auto file = settings.cabinet;
-  if (file.empty()) file = cabinet::find_cabinet(fs::current_path(error));
+  const bool named = !file.empty();
+  if (!named) file = cabinet::find_cabinet(fs::current_path(error));
   if (file.empty()) {
     cabinet_.reset();
     return nullptr;
   }
+  if (!named)
+    if (const auto trusted = check_cabinet_found(file); !trusted) return fail(trusted.error());
   const auto written = fs::last_write_time(file, error);
   const auto size = error ? 0 : fs::file_size(file, error);
   if (cabinet_ && file == file_ && !error && written == written_ && size == size_) return &*cabinet_;

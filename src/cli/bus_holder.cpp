@@ -7,6 +7,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
+#include "cli/restriction.hpp"
 #include "session/can_network.hpp"
 #include "session/open_network.hpp"
 #include "session/open_port.hpp"
@@ -47,6 +48,8 @@ std::string kind_text(session::Session& session) {
 Result<session::Session*> BusHolder::open(const Settings& settings) {
   if (settings.bus.empty())
     return fail(Errc::usage, "which bus?", bus_hint(can::can_interfaces(), session::ethercat_links()));
+  if (const auto* restriction = Restriction::current())
+    if (const auto allowed = restriction->check_bus(settings.bus); !allowed) return fail(allowed.error());
   const auto url = session::canonical_url(settings.bus);
   const bool traces_anew = bus_options_.trace != settings.trace;
   const bool is_open = open_.count(url) > 0 && !traces_anew;

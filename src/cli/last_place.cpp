@@ -4,6 +4,7 @@
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
+#include "base/found_file.hpp"
 #include "base/printable.hpp"
 #include "base/regular_files.hpp"
 #include "base/text.hpp"
@@ -123,7 +124,7 @@ Result<void> LastPlaceFile::write(const LastPlace& place) const {
                                 {"drive", report::text_or_null(place.drive)},
                                 {"cabinet", report::text_or_null(place.cabinet)},
                                 {"time", place.time}};
-  return write_file_atomically(path_, report::to_json(document) + "\n");
+  return write_own_file(path_, report::to_json(document) + "\n");
 }
 
 void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {

@@ -10,6 +10,8 @@
 #include <ctime>
 #include <utility>
 
+#include "base/found_file.hpp"
+
 namespace servoctl::cli {
 namespace {
 
@@ -37,6 +39,7 @@ Result<std::unique_ptr<LineLog>> LineLog::open(const std::filesystem::path& file
   const bool there = ::stat(name.c_str(), &kind) == 0;
   if (there && !S_ISREG(kind.st_mode))
     return fail(Errc::file, fmt::format("{} is no regular file", name), "name a file");
+  if (const auto links = check_links(file); !links) return fail(links.error());
   can::Descriptor descriptor(
       ::open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
   if (!descriptor) return refused(errno);

@@ -1,5 +1,8 @@
 #include "cli/line_runner.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include "base/printable.hpp"
@@ -7,6 +10,7 @@
 #include "cli/last_write.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "cli/words.hpp"
+#include "show/output_file.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -21,6 +25,36 @@ int undo_line(Shell& shell, const std::vector<std::string>& words) {
       shell.defaults().json, "undo");
 }
 
+/// As LineLog writes the time of a line.
+bool begins_with_time(std::string_view line) {
+  constexpr std::string_view kForm = "0000-00-00T00:00:00.000Z";
+  if (line.size() < kForm.size()) return false;
+  for (std::size_t i = 0; i < kForm.size(); ++i) {
+    const bool digit = line[i] >= '0' && line[i] <= '9';
+    if (kForm[i] == '0' ? !digit : line[i] != kForm[i]) return false;
+  }
+  return true;
+}
+
+bool is_log(const std::string& file) {
+  const can::Descriptor found(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
+  if (!found) return false;
+  char begin[32];
+  const auto size = ::read(found.get(), begin, sizeof begin);
+  return size > 0 && begins_with_time({begin, static_cast<std::size_t>(size)});
+}
+
+/// A log goes on where it ended; any other file is not written to without a question.
+Result<void> may_log(Shell& shell, const std::string& file) {
+  if (!show::is_replaced(file) || is_log(file)) return {};
+  if (shell.defaults().read_only)
+    return fail(Errc::refused, fmt::format("{} is no log, and --read-only changes no file", file),
+                "name a file that does not exist yet");
+  command::Context context;
+  RunningLine line(shell, shell.defaults(), context);
+  return line.confirm(fmt::format("Add to the file {}, which is no log of servoctl?", file));
+}
+
 /// `log on FILE`, `log off`, `log`; the exit code.
 int log_line(Shell& shell, const std::vector<std::string>& words) {
   auto& console = shell.console();
@@ -30,6 +64,8 @@ int log_line(Shell& shell, const std::vector<std::string>& words) {
         make_error(Errc::usage, "'log' takes `on FILE` or `off`", "log on commissioning.log"),
         shell.defaults().json, "log");
   if (on) {
+    if (const auto may = may_log(shell, words[2]); !may)
+      return shell.report_error(may.error(), shell.defaults().json, "log");
     auto log = LineLog::open(words[2]);
     if (!log) return shell.report_error(log.error(), shell.defaults().json, "log");
     console.set_log(std::move(*log));

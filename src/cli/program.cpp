@@ -29,6 +29,7 @@
 #include "cli/terminal/prompt.hpp"
 #include "cli/terminal/signals.hpp"
 #include "cli/words.hpp"
+#include "show/output_file.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -79,6 +80,13 @@ Result<Settings> settings_for_lines(const Settings& defaults, std::vector<std::s
   const auto parsed = parse_line(words);
   if (!parsed) return fail(parsed.error());
   return apply_options(defaults, parsed->arguments);
+}
+
+/// The trace of all lines.
+Result<void> may_trace(Shell& shell) {
+  command::Context context;
+  const RunningLine line(shell, shell.defaults(), context);
+  return show::may_replace(shell.defaults().trace, shell.defaults().read_only, context);
 }
 
 /// `servoctl -` is `servoctl run -`.
@@ -136,12 +144,15 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   if (first < words.size() || asks_for_help(words)) return run_one(shell, words, console);
   auto settings = settings_for_lines(shell.defaults(), words);
   if (!settings) return shell.report_error(settings.error(), false);
+  const bool traces = settings->trace != shell.defaults().trace;
   shell.defaults() = std::move(*settings);
+  if (const auto may = traces ? may_trace(shell) : Result<void>(); !may)
+    return shell.report_error(may.error(), false);
   console.set_chinese(shell.defaults().chinese);
   console.set_colour(shell.defaults().colour);
   if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell);
   if (shell.defaults().bus.empty())
-    take_last_place(shell, state_folder());
+    take_last_place(shell, shell.state_folder());
   else if (const auto opened = shell.open(shell.defaults()); !opened)
     return shell.report_error(opened.error(), false);
   return run_prompt(shell, console, !refuses_pager(words) && wants_pages());
@@ -154,24 +165,39 @@ int run_tab(const std::vector<std::string>& words, StandardConsole& console) {
   ::alarm(kLongestWaitSeconds);
   Shell::Options options;
   options.defaults = settings_from_environment();
-  options.state_folder = state_folder_as_it_is();
+  options.state_folder = state_folder_as_it_is().path;
   Shell shell(console, std::move(options));
   const auto answer = answer_tab(std::span(words).subspan(1), shell);
   if (!answer.empty()) console.out(answer + "\n");
   return 0;
 }
 
+/// Whether the line, or those that follow, may reach a drive, and notices are wanted: then it is told that
+/// nothing is remembered.
+bool wants_state(const std::vector<std::string>& words) {
+  const auto match = match_command(words);
+  const bool without =
+      match.command != nullptr && !is_batch(words) && !includes(match.command->needs, command::Needs::bus);
+  const auto says = [&](std::string_view word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  return !without && !asks_for_help(words) && !says("-q") && !says("--quiet");
+}
+
 int run(const std::vector<std::string>& words, StandardConsole& console) {
   if (!words.empty() && words.front() == kTabQuestion) return run_tab(words, console);
   Shell::Options options;
   options.defaults = settings_from_environment();
-  options.state_folder = state_folder();
+  auto state = state_folder();
+  options.state_folder = std::move(state.path);
   options.cancelled = interrupted;
   Shell shell(console, std::move(options));
   if (words.size() == 1 && words.front() == "--version") {
     console.out(fmt::format("servoctl {}\n", version()));
     return 0;
   }
+  if (wants_state(words) && !state.why_not.empty())
+    console.note(fmt::format("notice: {}\n", printable(console.in_language(state.why_not))));
   install_signal_handlers();
   try {
     return shell.close(run_lines(shell, words, console));

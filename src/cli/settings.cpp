@@ -7,6 +7,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/node_list.hpp"
+#include "cli/restriction.hpp"
 #include "command/output_form.hpp"
 
 namespace servoctl::cli {
@@ -100,7 +101,8 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
   if (arguments.has("--quiet") && arguments.has("--verbose"))
     return fail(Errc::usage, "--quiet and --verbose contradict each other", "leave one of them out");
   apply_form(base, arguments);
-  base.yes = base.yes || arguments.has("--yes");
+  // What a restricted file says of itself is no consent.
+  base.yes = base.yes || (arguments.has("--yes") && Restriction::current() == nullptr);
   base.quiet = arguments.has("--quiet") || (base.quiet && !arguments.has("--verbose"));
   base.verbose = arguments.has("--verbose") || (base.verbose && !arguments.has("--quiet"));
   base.force_family = base.force_family || arguments.has("--force-family");

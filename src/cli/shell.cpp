@@ -11,6 +11,7 @@
 #include "base/text.hpp"
 #include "cli/axis_word.hpp"
 #include "cli/hint_place.hpp"
+#include "cli/output_files.hpp"
 #include "cli/terminal/signals.hpp"
 #include "command/help_text.hpp"
 #include "report/catalogue.hpp"
@@ -151,6 +152,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   if (on_bus && includes(command.needs, Needs::node) && run.settings.nodes.empty())
     return fail(no_node(command));
   if (const auto right = check_words(command, run.context, arguments); !right) return right;
+  if (const auto may = admit_outputs(command, arguments, run.settings, run.context); !may) return may;
   const bool in_file = !command.families_in.empty() && arguments.has(command.families_in);
   if (!run.settings.drive.empty() || (includes(command.needs, Needs::dictionary) && !in_file) ||
       (on_bus && names_objects(command, arguments)))

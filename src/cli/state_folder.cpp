@@ -1,23 +1,47 @@
 #include "cli/state_folder.hpp"
 
+#include <sys/stat.h>
+
+#include <fmt/format.h>
 #include <cstdlib>
 #include <system_error>
 
-namespace servoctl::cli {
+#include "base/found_file.hpp"
 
-std::filesystem::path state_folder_as_it_is() {
+namespace servoctl::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path place() {
   if (const char* state = std::getenv("XDG_STATE_HOME"); state != nullptr && *state != '\0')
-    return std::filesystem::path(state) / "servoctl";
+    return fs::path(state) / "servoctl";
   if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-    return std::filesystem::path(home) / ".local/state/servoctl";
+    return fs::path(home) / ".local/state/servoctl";
   return {};
 }
 
-std::filesystem::path state_folder() {
-  auto folder = state_folder_as_it_is();
+}  // namespace
+
+StateFolder state_folder_as_it_is() {
+  auto folder = place();
+  std::error_code ignored;
+  if (!fs::exists(fs::symlink_status(folder, ignored))) return {folder, {}};
+  const auto own = check_own_folder(folder);
+  if (own) return {folder, {}};
+  return {{},
+          fmt::format("{}: nothing is kept or remembered there; {}", own.error().message, own.error().hint)};
+}
+
+StateFolder state_folder() {
+  const auto folder = place();
+  if (folder.empty()) return {};
   std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  return error ? std::filesystem::path() : folder;
+  fs::create_directories(folder.parent_path(), error);
+  constexpr mode_t kForThisUser = 0700;
+  const bool made = ::mkdir(folder.c_str(), kForThisUser) == 0;
+  if (!made && !fs::is_directory(folder, error)) return {};
+  return state_folder_as_it_is();
 }
 
 }  // namespace servoctl::cli

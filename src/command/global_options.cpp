@@ -59,7 +59,7 @@ constexpr Parameter kGlobal[] = {
     {.name = "--force-family",
      .help = "continue although the drive's identity contradicts -d; --yes does not imply it",
      .kind = Kind::flag},
-    {.name = "--read-only", .help = "refuse everything that changes a drive", .kind = Kind::flag},
+    {.name = "--read-only", .help = "refuse what changes a drive or replaces a file", .kind = Kind::flag},
     {.name = "--dry-run", .help = "show the frames, send nothing that changes a drive", .kind = Kind::flag},
     {.name = "--trace", .help = "write every frame to a file (candump -L format)", .kind = Kind::file},
     {.name = "--help", .help = "show the help of the command", .kind = Kind::flag, .short_name = "-h"},

@@ -71,8 +71,11 @@ constexpr Entry kManualEnvironment[] = {
 
 constexpr Entry kManualFiles[] = {
     {"cabinet.toml",
-     "The axes by name and what their drives are to hold; found in the current folder or above it."},
-    {"~/.config/servoctl/drives/", "Drive families of the user's own."},
+     "The axes by name and what their drives are to hold; found in the current folder or above it. A file of another "
+     "user, or one that others can write, must be named (--cabinet)."},
+    {"~/.config/servoctl/drives/",
+     "Drive families of the user's own. Files of another user are used only where SERVOCTL_DRIVES names the "
+     "folder."},
     {"PREFIX/share/servoctl/eds/",
      "The drive families that come with servoctl; PREFIX is the nearest folder above the program "
      "that has them: /usr for /usr/bin/servoctl."},

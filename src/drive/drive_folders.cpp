@@ -1,11 +1,16 @@
-// Where the data of the families stand.
+// Where the data of the families stand, and which of them are trusted.
+#include <fmt/format.h>
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <system_error>
 #include <utility>
 
+#include "base/found_file.hpp"
 #include "base/text.hpp"
+#include "drive/family_files.hpp"
 #include "drive/profile.hpp"
 
 namespace servoctl::drive {
@@ -25,18 +30,81 @@ std::optional<fs::path> own_folder() {
   return std::nullopt;
 }
 
-}  // namespace
-
-std::vector<fs::path> drive_folders() {
+/// The folders of $SERVOCTL_DRIVES.
+std::vector<fs::path> named_folders() {
   std::vector<fs::path> out;
   if (const char* own = std::getenv("SERVOCTL_DRIVES"); own != nullptr)
     for (const auto part : split(std::string_view(own), ':'))
       if (!part.empty()) out.emplace_back(part);
+  return out;
+}
+
+/// Those that are there without a word: the user's own, and the program's.
+std::vector<fs::path> found_folders() {
+  std::vector<fs::path> out;
   if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
     out.push_back(fs::path(config) / "servoctl/drives");
   else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
     out.push_back(fs::path(home) / ".config/servoctl/drives");
   if (auto own = own_folder()) out.push_back(std::move(*own));
+  return out;
+}
+
+bool is_below(const fs::path& file, const fs::path& folder) {
+  return std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+}
+
+/// Who can change the program can do whatever its data could.
+std::optional<uid_t> owner_of_program() {
+  struct stat info {};
+  return ::stat("/proc/self/exe", &info) == 0 ? std::optional(info.st_uid) : std::nullopt;
+}
+
+/// Beside the files of a family, and none by itself.
+constexpr std::string_view kTopics = ".topics.toml";
+
+void find_in(const fs::path& folder, std::vector<Family>& out) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    const auto extension = it->path().extension();
+    if (extension != ".eds" && extension != ".dcf" && extension != ".xml" && extension != ".toml") continue;
+    if (it->path().string().ends_with(kTopics)) continue;
+    const auto name = lower(it->path().stem().string());
+    if (std::none_of(out.begin(), out.end(), [&](const Family& f) { return f.name == name; }))
+      out.push_back({name, folder / it->path().stem()});
+  }
+}
+
+}  // namespace
+
+std::vector<fs::path> drive_folders() {
+  auto out = named_folders();
+  for (auto& folder : found_folders()) out.push_back(std::move(folder));
+  return out;
+}
+
+Result<void> check_family_file(const fs::path& file) {
+  static const auto found = found_folders();
+  const auto holds = [&](const fs::path& folder) { return is_below(file, folder); };
+  const auto named = named_folders();
+  if (std::any_of(named.begin(), named.end(), holds) || std::none_of(found.begin(), found.end(), holds))
+    return {};
+  return check_found_file(file,
+                          fmt::format("nothing of these drive data was used; if you trust them, name their "
+                                      "folder: SERVOCTL_DRIVES={}",
+                                      file.parent_path().string()),
+                          owner_of_program());
+}
+
+std::vector<Family> find_families(std::span<const fs::path> folders) {
+  std::vector<Family> out;
+  for (const auto& folder : folders) {
+    find_in(folder, out);
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+      if (std::error_code not_a_folder; it->is_directory(not_a_folder)) find_in(it->path(), out);
+  }
+  std::sort(out.begin(), out.end(), [](const Family& a, const Family& b) { return a.name < b.name; });
   return out;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "drive/family_files.hpp"
 #include "drive/profile_sheet.hpp"
 #include "od/data_sheet.hpp"
 
@@ -82,6 +83,11 @@ bool has_dictionary(const Part& part) {
          std::end(kSheetExtensions);
 }
 
+Result<std::string> read_family_file(const fs::path& path) {
+  if (const auto trusted = check_family_file(path); !trusted) return fail(trusted.error());
+  return read_file(path);
+}
+
 /// Parents of parents end here: a family that is its own ancestor would never.
 constexpr int kMostAncestors = 4;
 
@@ -91,7 +97,7 @@ Result<Profile> load_parent(const Family& family, std::span<const fs::path> fold
   std::error_code ignored;
   const auto path = with_extension(family.stem, ".toml");
   if (!fs::exists(path, ignored)) return Profile{};
-  const auto text = read_file(path);
+  const auto text = read_family_file(path);
   if (!text) return fail(text.error());
   const auto parent = parent_of(*text);
   if (parent.empty()) return Profile{};
@@ -100,8 +106,8 @@ Result<Profile> load_parent(const Family& family, std::span<const fs::path> fold
                 fmt::format("{}: its parents form a loop (parent = \"{}\")", path.string(), parent));
   auto loaded = load_family(parent, folders, ancestors + 1);
   if (!loaded)
-    return fail(Errc::file, fmt::format("{}: parent: {}", path.string(), loaded.error().message),
-                loaded.error().hint);
+    return fail(loaded.error().code == Errc::refused ? Errc::refused : Errc::file,
+                fmt::format("{}: parent: {}", path.string(), loaded.error().message), loaded.error().hint);
   return loaded;
 }
 
@@ -113,12 +119,15 @@ Result<Profile> load_parts(const Family& family, std::span<const fs::path> folde
   profile.warnings.clear();
   bool has_sheet = false;
   std::error_code ignored;
-  if (auto topics = with_extension(family.stem, kTopics); fs::exists(topics, ignored))
+  if (auto topics = with_extension(family.stem, kTopics); fs::exists(topics, ignored)) {
+    if (const auto trusted = check_family_file(topics); !trusted) return fail(trusted.error());
     profile.topic_files.insert(profile.topic_files.begin(), std::move(topics));
+  }
   for (const auto& part : kParts) {
     const auto path = with_extension(family.stem, part.extension);
     if (!fs::exists(path, ignored)) continue;
     if (has_dictionary(part) && std::exchange(has_sheet, true)) continue;
+    if (const auto trusted = check_family_file(path); !trusted) return fail(trusted.error());
     if (const auto added = part.add(profile, path); !added) return fail(added.error());
   }
   profile.build_index();
@@ -128,7 +137,10 @@ Result<Profile> load_parts(const Family& family, std::span<const fs::path> folde
 /// What is known of any drive, under another name.
 Profile generic_profile(std::string family, std::span<const fs::path> folders) {
   Profile profile;
-  if (auto generic = load_family(kGenericFamily, folders, 0)) profile = std::move(*generic);
+  if (auto generic = load_family(kGenericFamily, folders, 0))
+    profile = std::move(*generic);
+  else if (generic.error().code == Errc::refused)
+    profile.warnings.push_back(generic.error().message);
   profile.family = std::move(family);
   profile.rules.name.clear();
   profile.rules.vendor.clear();
@@ -161,18 +173,6 @@ bool names_a_file(std::string_view family) {
   return family.find('/') != std::string_view::npos || folded.ends_with(".eds") || folded.ends_with(".dcf") ||
          folded.ends_with(".csv") || folded.ends_with(".toml") ||
          od::sheet_name(folded).path.ends_with(".xml");
-}
-
-void find_in(const fs::path& folder, std::vector<Family>& out) {
-  std::error_code error;
-  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    const auto extension = it->path().extension();
-    if (extension != ".eds" && extension != ".dcf" && extension != ".xml" && extension != ".toml") continue;
-    if (it->path().string().ends_with(kTopics)) continue;
-    const auto name = lower(it->path().stem().string());
-    if (std::none_of(out.begin(), out.end(), [&](const Family& f) { return f.name == name; }))
-      out.push_back({name, folder / it->path().stem()});
-  }
 }
 
 }  // namespace
@@ -217,18 +217,6 @@ const od::Parameter* Profile::parameter(ObjectAddress object) const {
   return found == by_object_.end() ? nullptr : &parameters[found->second];
 }
 
-std::vector<Family> find_families(std::span<const fs::path> folders) {
-  std::vector<Family> out;
-  for (const auto& folder : folders) {
-    find_in(folder, out);
-    std::error_code error;
-    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-      if (std::error_code not_a_folder; it->is_directory(not_a_folder)) find_in(it->path(), out);
-  }
-  std::sort(out.begin(), out.end(), [](const Family& a, const Family& b) { return a.name < b.name; });
-  return out;
-}
-
 namespace {
 
 /// To a family with faults of its own and no parent those of CiA 402. Without them it is as good as before.
@@ -237,7 +225,7 @@ void add_standard_faults(Profile& profile, std::span<const Family> families) {
   if (generic == nullptr || profile.is_generic() || profile.faults.empty() || !profile.parent_faults.empty())
     return;
   const auto path = with_extension(generic->stem, ".faults.csv");
-  const auto text = read_file(path);
+  const auto text = read_family_file(path);
   if (!text) return;
   if (auto faults = parse_faults(*text, path.string())) profile.parent_faults = std::move(*faults);
 }
@@ -292,7 +280,7 @@ fs::path rules_file(const Family& family) { return with_extension(family.stem, "
 
 Result<Rules> load_rules(const Family& family) {
   const auto path = rules_file(family);
-  const auto text = read_file(path);
+  const auto text = read_family_file(path);
   if (!text) return fail(text.error());
   return parse_rules(*text, path.string());
 }

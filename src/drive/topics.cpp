@@ -1,4 +1,5 @@
 #include "drive/topics.hpp"
+#include "drive/family_files.hpp"
 
 #include <algorithm>
 #include <system_error>
@@ -53,7 +54,7 @@ std::optional<fs::path> standard_file(std::span<const fs::path> folders) {
   for (const auto& family : find_families(folders)) {
     if (family.name != kStandardFamily) continue;
     fs::path path = family.stem.string() + std::string(kTopicFile);
-    if (fs::exists(path, ignored)) return path;
+    if (fs::exists(path, ignored) && check_family_file(path)) return path;
   }
   return std::nullopt;
 }

@@ -4,6 +4,7 @@
 
 #include "base/checksum.hpp"
 #include "base/file.hpp"
+#include "base/found_file.hpp"
 #include "base/number.hpp"
 #include "session/identify.hpp"
 #include "show/bus_name.hpp"
@@ -100,7 +101,7 @@ Result<std::optional<KeptTurn>> TurnFile::read() const {
 Result<void> TurnFile::write(const KeptTurn& turn) const {
   auto document = body_of(turn, node_);
   document.push_back({"seal", seal_of(turn, node_)});
-  return write_file_atomically(path_, report::to_json(document) + "\n");
+  return write_own_file(path_, report::to_json(document) + "\n");
 }
 
 Result<bool> TurnFile::remove() const {

@@ -6,6 +6,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/provenance.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/operation_mode.hpp"
 #include "motion/other_axes.hpp"
@@ -45,6 +46,7 @@ class Preflight {
     if (const auto done = look_at_needs(); !done) return fail(done.error());
     if (const auto done = look_at_objects(); !done) return fail(done.error());
     if (const auto done = look_at_cautions(); !done) return fail(done.error());
+    look_at_data();
     return std::move(items_);
   }
 
@@ -191,6 +193,15 @@ class Preflight {
     for (const auto& [name, value] : request_.panel)
       add(Weight::note, name, fmt::format("{} by --panel: servoctl cannot read it", value));
     return {};
+  }
+
+  /// A drive that is simulated in this process is made from the same data: it proves nothing about them.
+  void look_at_data() {
+    const auto& url = session_->url();
+    if (url.starts_with("sim:") || url.find(":sim:") != std::string::npos) return;
+    add(Weight::note, "data",
+        fmt::format("the drive data were checked against: {}",
+                    drive::provenance_text(units_->profile(), chinese_)));
   }
 
   session::Session* session_;

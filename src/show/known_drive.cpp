@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/file.hpp"
+#include "base/found_file.hpp"
 #include "show/bus_name.hpp"
 #include "show/field_reader.hpp"
 #include "show/identity.hpp"
@@ -52,7 +53,7 @@ Result<void> KnownDriveFile::write(const KnownDrive& drive) const {
       {"servoctl_drive", kVersion}, {"node", std::uint64_t{node_}},
       {"family", drive.family},     {"turn", report::text_or_null(drive.turn)},
       {"time", drive.time},         {"identity", identity_record(lasting(drive.identity))}};
-  return write_file_atomically(path_, report::to_json(document) + "\n");
+  return write_own_file(path_, report::to_json(document) + "\n");
 }
 
 Result<void> KnownDriveFile::remove() const {

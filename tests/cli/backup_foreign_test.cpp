@@ -131,7 +131,7 @@ TEST_F(BackupTest, ATableKeepsTextsFromBeingRunAndBringsThemBack) {
     SCOPED_TRACE(text);
     use("sim:lab@1", "lab");
     ASSERT_EQ(run(fmt::format("write 2000 \"{}\"", text)), 0) << console.err_text;
-    ASSERT_EQ(run("backup %text.csv"), 0) << console.err_text;
+    ASSERT_EQ(run("backup %text.csv --yes"), 0) << console.err_text;
     const bool number = std::string_view(text) == "-123";
     EXPECT_NE(slurp("text.csv").find(fmt::format(",{}{},", number ? "" : "'", text)), std::string::npos)
         << slurp("text.csv");

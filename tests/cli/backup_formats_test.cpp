@@ -23,10 +23,10 @@ TEST_F(BackupTest, InEveryFormatIsWhatTheDriveHolds) {
   for (const auto& c : kChanged) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
-    ASSERT_EQ(run("backup %first.json"), 0);
+    ASSERT_EQ(run("backup %first.json --yes"), 0);
     for (const std::string format : kFormats) {
       SCOPED_TRACE(format);
-      ASSERT_EQ(run("backup %drive." + format), 0) << console.err_text;
+      ASSERT_EQ(run("backup %drive." + format + " --yes"), 0) << console.err_text;
       // What this drive holds outside of its limits no other tool may put into a drive: DCF and table leave
       // it out, and that is told.
       const bool kept = std::string_view(c.family) != "da200" || format == "json" || format == "servoctl";
@@ -52,8 +52,8 @@ TEST_F(BackupTest, InEveryFormatIsPutBackIntoEveryFamily) {
     for (const std::string format : kFormats) {
       SCOPED_TRACE(c.family + (" as " + format));
       use(fmt::format("sim:{}@1", c.family), c.family);
-      ASSERT_EQ(run("backup %all.json"), 0);
-      ASSERT_EQ(run("backup %drive." + format), 0);
+      ASSERT_EQ(run("backup %all.json --yes"), 0);
+      ASSERT_EQ(run("backup %drive." + format + " --yes"), 0);
       ASSERT_EQ(run(c.line), 0) << console.err_text;
       ASSERT_EQ(run("verify %drive." + format), 1);
       ASSERT_EQ(run("restore %drive." + format + " --yes"), 0) << console.out_text << console.err_text;
@@ -78,8 +78,8 @@ TEST_F(BackupTest, AsABatchIsReplayedOnADriveFromTheFactory) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
     ASSERT_EQ(run(c.line), 0);
-    ASSERT_EQ(run("backup %mine.json"), 0);
-    ASSERT_EQ(run("backup %mine.servoctl"), 0);
+    ASSERT_EQ(run("backup %mine.json --yes"), 0);
+    ASSERT_EQ(run("backup %mine.servoctl --yes"), 0);
     use(fmt::format("sim:{}@1", c.family), "");
     ASSERT_EQ(run(fmt::format("verify %mine.json -d {}", c.family)), 1);
     EXPECT_EQ(run("run %mine.servoctl"), 0) << console.err_text;
@@ -112,7 +112,7 @@ TEST_F(BackupTest, OfWhatWasChangedLeavesTheFactoryValuesOut) {
 }
 
 TEST_F(BackupTest, IsRestoredInParts) {
-  ASSERT_EQ(run("backup %all.json"), 0);
+  ASSERT_EQ(run("backup %all.json --yes"), 0);
   ASSERT_EQ(run("param set Pn0214=450 Pn0031=1"), 0) << console.err_text;
   ASSERT_EQ(run("write 0x1017 500"), 0);
   EXPECT_EQ(run("restore %all.json --only nothing --yes"), 2);

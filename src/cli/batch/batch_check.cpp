@@ -4,7 +4,9 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "cli/output_files.hpp"
 #include "cli/parse.hpp"
+#include "cli/restriction.hpp"
 #include "cli/terminal/prompt_words.hpp"
 #include "command/written_words.hpp"
 #include "report/catalogue.hpp"
@@ -51,6 +53,16 @@ class Check {
     return {};
   }
 
+  /// What nobody could be asked when its turn comes is told before the first line is run.
+  Result<void> check_outputs(const ParsedLine& line, const Settings& settings) {
+    const bool asks = !settings.yes && shell_->console().can_ask();
+    const bool replaces = settings.yes && !settings.read_only;
+    if (asks || replaces) return {};
+    command::Context context;
+    const RunningLine nobody(*shell_, settings, context);
+    return admit_outputs(*line.command, line.arguments, settings, context);
+  }
+
   Result<void> check_part(const ParsedLine& line, const LinePart& part) {
     command::Context context;
     if (const auto ready = prepare(line, part.settings, context); !ready) return ready;
@@ -68,6 +80,10 @@ class Check {
   Result<void> prepare(const ParsedLine& line, const Settings& settings, command::Context& context) {
     const auto& command = *line.command;
     if (const auto allowed = check_allowed(command, line.arguments, settings); !allowed) return allowed;
+    if (const auto may = check_outputs(line, settings); !may) return may;
+    const auto* restriction = Restriction::current();
+    if (restriction != nullptr && includes(command.needs, Needs::bus) && !settings.bus.empty())
+      if (const auto allowed = restriction->check_bus(settings.bus); !allowed) return allowed;
     if (includes(command.needs, Needs::node) && settings.nodes.empty()) return fail(no_node(command));
     if (!settings.nodes.empty()) {
       auto nodes = parse_nodes(settings.nodes);

@@ -10,6 +10,8 @@
 #include "cli/batch/batch_frames.hpp"
 #include "cli/batch/batch_plan.hpp"
 #include "cli/batch/batch_run.hpp"
+#include "cli/output_files.hpp"
+#include "cli/restriction.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cli {
@@ -83,6 +85,34 @@ std::vector<Error> errors_before_run(Shell& shell, std::span<const Step> steps, 
   return errors;
 }
 
+/// The bus of the run, which may be named as in the cabinet file; without one those of that file.
+Result<Restriction> restriction_of(Shell& shell, const Settings& settings, const std::string& file) {
+  const auto folder = file == "-" ? std::filesystem::path() : std::filesystem::path(file).parent_path();
+  const auto cabinet = shell.cabinet(settings);
+  if (!cabinet) return fail(cabinet.error());
+  const auto* bus = *cabinet == nullptr ? nullptr : (*cabinet)->bus(settings.bus);
+  std::vector<std::string> buses;
+  if (!settings.bus.empty()) buses.push_back(bus != nullptr ? bus->url : settings.bus);
+  if (settings.bus.empty() && *cabinet != nullptr)
+    for (const auto& each : (*cabinet)->buses) buses.push_back(each.url);
+  return Restriction(folder, buses);
+}
+
+/// What the options of the run itself need before its file is read.
+Result<std::optional<Restriction>> prepare_run(Shell& shell, const ParsedLine& line,
+                                               const Settings& settings) {
+  const bool runs = !line.arguments.has("--check") && !settings.dry_run;
+  command::Context context;
+  const RunningLine asked(shell, settings, context);
+  if (runs)
+    if (const auto may = admit_outputs(*line.command, line.arguments, settings, context); !may)
+      return fail(may.error());
+  if (!line.arguments.has("--restricted")) return std::optional<Restriction>();
+  auto restriction = restriction_of(shell, settings, std::string(line.arguments.text("file")));
+  if (!restriction) return fail(restriction.error());
+  return std::optional(std::move(*restriction));
+}
+
 int run_file(Shell& shell, const command::Arguments& arguments, const StandardText& input) {
   const auto settings = shell.defaults();
   const std::string file(arguments.text("file"));
@@ -124,6 +154,9 @@ int run_batch(Shell& shell, const std::vector<std::string>& words, const Standar
   if (!parsed) return shell.run(words);
   auto settings = apply_options(shell.defaults(), parsed->arguments);
   if (!settings) return shell.run(words);
+  auto restriction = prepare_run(shell, *parsed, *settings);
+  if (!restriction) return show(shell.console(), failed(restriction.error(), *settings, kPath));
+  const RestrictedRun restricted(std::move(*restriction));
   const KeepDefaults keep(shell);
   shell.defaults() = std::move(*settings);
   return run_file(shell, parsed->arguments, input);

@@ -8,6 +8,7 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "cli/batch/batch.hpp"
+#include "cli/restriction.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -125,7 +126,12 @@ Result<std::string> Variables::value(std::string_view name) const {
 
 Result<std::vector<LoopItem>> loop_items(std::span<const std::string> words,
                                          const std::filesystem::path& folder) {
-  if (words.size() == 1 && names_csv(words.front())) return rows(words.front(), folder);
+  if (words.size() == 1 && names_csv(words.front())) {
+    if (const auto* restriction = Restriction::current())
+      if (const auto allowed = restriction->check_file(folder / words.front()); !allowed)
+        return fail(allowed.error());
+    return rows(words.front(), folder);
+  }
   std::vector<LoopItem> out;
   for (const auto& word : words) {
     if (names_csv(word)) return fail(Errc::usage, "a CSV file must stand alone in its list");

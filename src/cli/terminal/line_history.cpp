@@ -2,6 +2,7 @@
 
 #include "base/file.hpp"
 #include "base/folded.hpp"
+#include "base/found_file.hpp"
 #include "base/regular_files.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
@@ -62,7 +63,7 @@ Result<void> LineHistory::save(const std::filesystem::path& file) const {
   keep_newest(lines);
   std::string text;
   for (const auto& line : lines) text += line + "\n";
-  return write_file_atomically(file, text);
+  return write_own_file(file, text);
 }
 
 void LineHistory::add(std::string_view line) {

@@ -14,7 +14,6 @@
 #include "base/timespec.hpp"
 #include "cli/last_place.hpp"
 #include "cli/line_runner.hpp"
-#include "cli/state_folder.hpp"
 #include "cli/terminal/completer.hpp"
 #include "cli/terminal/line_editor.hpp"
 #include "cli/terminal/pager.hpp"
@@ -91,7 +90,7 @@ class Prompt {
   LineEditor editor_;
   PromptTerminal terminal_;
   TypedKeys keys_{STDIN_FILENO};
-  std::filesystem::path folder_ = state_folder();
+  std::filesystem::path folder_ = shell_->state_folder();
   std::string kept_;  ///< The place that was.
   bool done_ = false;
   bool gives_up_paste_ = false;

@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "cli/batch/batch_command.hpp"
 #include "cli/parse.hpp"
+#include "cli/restriction.hpp"
 #include "cli/terminal/ascii_form.hpp"
 #include "cli/terminal/begun_place.hpp"
 #include "cli/words.hpp"
@@ -177,6 +178,15 @@ PromptText prompt_text(Shell& shell, std::size_t window) {
 
 namespace {
 
+/// What `bus` and `drive` may name in a restricted run. The name of a bus of the cabinet is looked at when it
+/// is opened.
+Result<void> check_restricted(const command::PromptWord& word, const std::string& name) {
+  const auto* restriction = Restriction::current();
+  if (restriction == nullptr || word.name == "use") return {};
+  if (word.name == "drive") return restriction->check_family(name);
+  return name.find(':') == std::string::npos ? Result<void>() : restriction->check_bus(name);
+}
+
 /// `drive` says nothing of an axis.
 void tell_other_family(Shell& shell, const std::string& said) {
   const auto family = family_in_cabinet(shell.defaults(), shell);
@@ -208,6 +218,7 @@ Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::
   if (words.size() != 2)
     return fail(Errc::usage, fmt::format("'{}' takes one argument", word->name),
                 fmt::format("`{}`: {}", command::prompt_usage(*word), word->summary));
+  if (const auto allowed = check_restricted(*word, words[1]); !allowed) return fail(allowed.error());
   if (word->name == "use") {
     if (const auto known = check_nodes(shell, defaults, words[1]); !known) return fail(known.error());
     defaults.nodes = words[1];

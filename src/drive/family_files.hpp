@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "base/result.hpp"
+
+namespace servoctl::drive {
+
+/// Whether a file of a family may be used. One in a folder that was only found (the user's own, or beside the
+/// program) and is not named in $SERVOCTL_DRIVES must not be another user's, or open to others: see
+/// check_found_file(); the owner of the program counts as trusted. Errc::refused with the way to name it.
+Result<void> check_family_file(const std::filesystem::path& file);
+
+}  // namespace servoctl::drive
