@@ -252,14 +252,13 @@ TEST(PdoChange, AMappingThatIsReadOnlyIsNotTriedPreOperational) {
 /// Nothing tells the state but the drive itself: it refused as long as it was operational, and not
 /// afterwards.
 TEST(PdoChange, ADriveThatRefusedBecauseOfItsStateIsStartedAgain) {
-  PdoWorld world(PdoWorld::profile_of("da200"), 1);
+  PdoWorld world(changed_outside_operational(), 1);
   world.client_profile = nullptr;
   auto quiet = world.session({});
-  ASSERT_TRUE(quiet.download(1, {0x1017, 0}, {0, 0}));
   ASSERT_TRUE(quiet.download(1, {0x100C, 0}, {100, 0}));
   ASSERT_TRUE(quiet.download(1, {0x100D, 0}, {3}));
   auto pdo = world.pdo("TPDO2");
-  pdo.entries = {entry(pdo.entries.size() == 1 ? 0x60640020 : 0x60410010)};
+  pdo.entries = {entry(0x60640020)};
   const auto outcome = world.change({pdo});
   ASSERT_FALSE(outcome.failure) << outcome.failure->message;
   ASSERT_EQ(outcome.notices.size(), 1U) << testing::PrintToString(outcome.notices);
