@@ -6,11 +6,13 @@
 
 namespace servoctl {
 
-/// On the clock of real transports; none when it is over.
-inline Duration left_until(TimePoint deadline) {
-  const auto now = steady_now();
+/// How long it is from `now` to `deadline`; zero when that is over, whatever the two are: what is due at once
+/// may have TimePoint::min(), from which nothing can be subtracted.
+constexpr Duration left_between(TimePoint now, TimePoint deadline) {
   return deadline > now ? deadline - now : Duration::zero();
 }
+/// On the clock of real transports.
+inline Duration left_until(TimePoint deadline) { return left_between(steady_now(), deadline); }
 
 /// For ppoll() and its like; `time` is not negative.
 inline timespec to_timespec(Duration time) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/signal_wait.hpp"
+#include "base/timespec.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -91,8 +92,8 @@ void GatewayLoop::wait() {
   const auto clients = polled.size();
   if (const int wire = session_->network().poll_fd(); wire >= 0) polled.push_back({wire, POLLIN, 0});
   const auto next = std::min(server_->deadline(), session_->next_event());
-  const auto left = next == kNever ? kLongestWait : std::min(kLongestWait, next - session_->now());
-  if (servoctl::wait_or_signal(polled, std::max(Duration::zero(), left)) <= 0) return;
+  const auto left = std::min(kLongestWait, left_between(session_->now(), next));
+  if (servoctl::wait_or_signal(polled, left) <= 0) return;
   for (const auto& arrival : listener_->take(std::span(polled).first(clients))) take_in(arrival);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/signal_wait.hpp"
+#include "base/timespec.hpp"
 
 namespace servoctl::sim {
 
@@ -13,7 +14,7 @@ bool SimClock::wait_until(TimePoint time) {
     virtual_now_ = std::max(virtual_now_, time);
     return true;
   }
-  const auto left = time - steady_now();
+  const auto left = left_until(time);
   if (left <= Duration::zero()) return true;
   return wait_or_signal({}, std::min<Duration>(left, std::chrono::hours(1))) == 0;
 }
