@@ -10,6 +10,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
 #include "motion/producer_claim.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -58,6 +59,8 @@ Result<void> Motion::find_watchdog() {
 Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
   auto items = preflight(*session_, *units_, node_, chinese);
   if (!items) return items;
+  chinese_ = chinese;
+  shown_ = *items;
   // What refuses the motion needs no second of listening.
   if (check_preflight(*items, node_)) {
     if (const auto found = find_watchdog(); !found) return fail(found.error());
@@ -168,10 +171,16 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
   guard_->set_standstill(standstill_);
   session::Rehearsal unused;
   if (const auto ready = make_ready(*guard_, mode, settings, kept_target, unused); !ready) return ready;
+  if (const auto fine = look_in_op(); !fine) return fine;
   (void)session_->take_events();  // What was told before is no news of this motion.
   auto enabled = guard_->enable();
   monitor_->on_written();
   return enabled;
+}
+
+Result<void> Motion::look_in_op() {
+  if (!guard_->needs_process_data()) return {};
+  return motion::look_in_op(*session_, *units_, node_, chinese_, shown_, options_.ask_again);
 }
 
 /// All that is done before it is enabled.
@@ -219,7 +228,10 @@ Result<std::vector<session::PlannedMessage>> Motion::rehearse(const MotionPlan& 
 }
 
 Result<void> Motion::write(ObjectAddress object, const Bytes& data) {
+  const session::Hurry hurry(*session_, kMovingPatience, 1);
   auto done = guard_->change(object, data);
+  // The late answer to a read that the time cut short may have come first.
+  if (!done && done.error().code == Errc::protocol) done = guard_->change(object, data);
   monitor_->on_written();
   return done;
 }
@@ -240,20 +252,35 @@ Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)
   }
 }
 
+/// It ends by time, and not behind an answer that comes late or never: what is asked of the drive then, the
+/// time cuts short.
 Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSample&)>& done,
                                Duration longest) {
   const auto end = session_->now() + longest;
+  // Without a length it is one look.
+  const auto limit = longest > Duration::zero() ? std::min(end, session_->options().until) : kNever;
+  const session::OptionScope until(*session_, &session::Options::until, limit);
+  const auto is_over = [&](const Error& error) {
+    const auto& cancelled = session_->options().cancelled;
+    return error.code == Errc::interrupted && session_->now() >= end && !(cancelled && cancelled());
+  };
   for (;;) {
     const auto sample = monitor_->sample();
+    if (!sample && is_over(sample.error())) return false;
     if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
     if (!sample) return fail(sample.error());
-    if (const auto fits = check_turn(*sample); !fits) return fail(fits.error());
+    if (const auto fits = check_turn(*sample); !fits) {
+      if (is_over(fits.error())) return false;
+      return fail(fits.error());
+    }
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));
     const auto enough = done(*sample);
     if (!enough || *enough) return enough;
     if (session_->now() >= end) return false;
-    if (const auto waited = monitor_->wait_for_next(); !waited) return fail(waited.error());
+    const auto waited = monitor_->wait_for_next();
+    if (!waited && is_over(waited.error())) return false;
+    if (!waited) return fail(waited.error());
   }
 }
 

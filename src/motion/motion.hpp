@@ -32,6 +32,7 @@ struct MotionOptions {
   std::function<void(const MotionSample&)> on_sample;
   bool rehearsal = false;         ///< Nothing is to be sent: the bus is not listened to for a second.
   std::function<bool()> unheard;  ///< Nobody takes the samples any more: the motion ends. May be empty.
+  AskAgain ask_again;             ///< About what a drive tells in OP only; empty: it refuses the motion.
 };
 
 /// What came of a motion.
@@ -145,6 +146,7 @@ class Motion {
   Result<std::optional<double>> monitored_speed();
   Error quarrel(double shown, double speed) const;
   Result<void> look_again();
+  Result<void> look_in_op();
   Result<void> make_ready(MotionGuard& guard, std::int8_t mode, const std::vector<MotionSetting>& settings,
                           std::optional<ObjectAddress> kept_target, session::Rehearsal& rehearsal);
   Result<void> read_limits();
@@ -164,6 +166,8 @@ class Motion {
   std::unique_ptr<MotionGuard> guard_;
   WatchdogPlan watchdog_;
   bool watchdog_found_ = false;
+  bool chinese_ = false;
+  std::vector<PreflightItem> shown_;  ///< What look() has found.
   Result<double> speed_cap_ = 0.0;
   double standstill_ = 0;
   std::string turn_unchecked_;      ///< Why the counts of a turn were not held against the monitor.
