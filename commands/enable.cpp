@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -9,6 +10,7 @@
 #include "drive/cia402.hpp"
 #include "motion/left_energised.hpp"
 #include "motion/motion_result.hpp"
+#include "motion/motion_run.hpp"
 #include "motion/operation_mode.hpp"
 #include "motion/power.hpp"
 #include "session/option_scope.hpp"
@@ -25,8 +27,12 @@ using report::Value;
 
 constexpr Parameter kEnableParameters[] = {kTurnOption, kPanelOption, kIgnoreRemoteOption};
 
-/// Up to "operation enabled" with harmless targets. On every other way out the drive is de-energised.
-Result<void> energise(Context& context, motion::Motion& motion, session::Rehearsal& rehearsal) {
+using Items = std::vector<motion::PreflightItem>;
+
+/// Up to "operation enabled" with harmless targets. On every other way out the drive is de-energised. `shown`
+/// is what its preflight has shown.
+Result<void> energise(Context& context, motion::Motion& motion, const Items& shown,
+                      session::Rehearsal& rehearsal) {
   // Answers to other masters that came while a person was thinking are not for what is asked now.
   if (const auto heard = context.session->listen(); !heard) return heard;
   motion::MotionGuard guard(*context.session, motion.units(), motion.node());
@@ -37,6 +43,12 @@ Result<void> energise(Context& context, motion::Motion& motion, session::Rehears
   if (const auto done = guard.neutral_targets(); !done) return done;
   if (!starts_first)
     if (const auto done = guard.start_node(); !done) return done;
+  if (starts_first && !context.dry_run) {
+    const auto fine = motion::look_in_op(*context.session, motion.units(), motion.node(), context.chinese,
+                                         shown, motion::ask_again(context, motion.node()),
+                                         motion.request());
+    if (!fine) return fine;
+  }
   if (const auto done = guard.enable(); !done) return done;
   return guard.release();
 }
@@ -52,8 +64,8 @@ motion::PreflightItem watchdog_of(const Context& context, const motion::Motion& 
       "is lost"};
 }
 
-/// Of one node of the line, before any is enabled.
-Result<void> look_at(Context& context, motion::Motion& motion) {
+/// Of one node of the line, before any is enabled; what was shown goes into `shown`.
+Result<void> look_at(Context& context, motion::Motion& motion, Items& shown) {
   if (const auto ready = motion.prepare(); !ready) return fail(ready.error());
   // Where it stays energised after servoctl has gone nothing can watch servoctl.
   if (context.session->network().carries(session::LifeSign::Kind::process_data))
@@ -61,6 +73,7 @@ Result<void> look_at(Context& context, motion::Motion& motion) {
   if (const auto possible = motion.intend({drive::Use::enable}); !possible) return possible;
   auto items = motion.look_at_drive(context.chinese);
   if (!items) return fail(items.error());
+  shown = *items;
   items->push_back(watchdog_of(context, motion));
   context.tell(motion::preflight_text(*items, context.chinese));
   return motion::check_preflight(*items, motion.node());
@@ -93,7 +106,8 @@ class Enabling {
   }
 
   void run(session::Rehearsal& rehearsal) {
-    if (!each([this](motion::Motion& motion) { return look_at(*context_, motion); })) return;
+    if (!each([this](motion::Motion& motion) { return look_at(*context_, motion, shown_[motion.node()]); }))
+      return;
     confirmed_ = each([this](motion::Motion& motion) { return ask(*context_, motion); });
     if (!confirmed_) return;
     if (!each([&](motion::Motion& motion) { return enable(motion, rehearsal); })) take_back();
@@ -131,7 +145,9 @@ class Enabling {
 
   Result<void> enable(motion::Motion& motion, session::Rehearsal& rehearsal) {
     begun_.insert(motion.node());
-    if (const auto done = energise(*context_, motion, rehearsal); !done || context_->dry_run) return done;
+    if (const auto done = energise(*context_, motion, shown_[motion.node()], rehearsal);
+        !done || context_->dry_run)
+      return done;
     const auto state = motion::Power(*context_->session, *context_->profile, motion.node()).state();
     if (!state || *state == drive::DriveState::operation_enabled) return {};
     return fail(drive_error(Errc::negative, motion.node(),
@@ -168,6 +184,7 @@ class Enabling {
 
   Context* context_;
   std::vector<std::unique_ptr<motion::Motion>> motions_;
+  std::map<std::uint8_t, Items> shown_;  ///< By node.
   std::set<std::uint8_t> begun_;
   std::set<std::uint8_t> taken_back_;
   bool confirmed_ = true;  ///< Whoever was asked and did not say yes has not failed.

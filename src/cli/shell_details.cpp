@@ -8,6 +8,7 @@
 
 #include "base/printable.hpp"
 #include "cli/shell.hpp"
+#include "cli/terminal/signals.hpp"
 #include "session/open_bus.hpp"
 #include "show/reading.hpp"
 
@@ -69,6 +70,7 @@ std::string exchange_text(const session::Exchange& one, const drive::Profile* pr
 session::Options Shell::session_options() {
   session::Options out;
   out.cancelled = options_.cancelled;
+  out.signals = times_signalled;
   out.protection = &protection_;
   // Two that start at once have process numbers close together, or other times.
   constexpr std::uint64_t kSpread = 0x9E37'79B9'7F4A'7C15;

@@ -18,10 +18,13 @@ auto* field_of(Fields& fields, ObjectAddress object) {
 
 std::size_t bytes_for(std::size_t bits) { return (bits + 7) / 8; }
 
-/// LRW counts 2 for what was written and 1 for what was read; apart each counts 1.
+/// LRW counts 2 for what was written and 1 for what was read; apart each counts 1 (ETG.1000.4, 5.4).
+constexpr std::uint16_t kTaken = 2;
+constexpr std::uint16_t kGiven = 1;
+
 std::uint16_t expected_counter(Command command, bool outputs, bool inputs) {
   if (command != Command::lrw) return 1;
-  return static_cast<std::uint16_t>((outputs ? 2U : 0U) + (inputs ? 1U : 0U));
+  return static_cast<std::uint16_t>((outputs ? kTaken : 0U) + (inputs ? kGiven : 0U));
 }
 
 }  // namespace
@@ -203,24 +206,29 @@ void ProcessImage::collect(Slave& slave, Ring& ring) {
 void ProcessImage::take_in(Slave& slave, const Flight& flight, const Answer& answer) {
   if (answer.lost) {
     ++slave.counts.lost;
+    slave.counts.expected = 0;
     return count(slave, flight, false);
   }
-  const bool both = flight.command == Command::lrw;
   const bool has_outputs = !slave.outputs.empty() && flight.command != Command::lrd;
   const bool has_inputs = !slave.inputs.empty() && flight.command != Command::lwr;
-  const bool took = has_outputs && (both ? (answer.working_counter & 2U) != 0 : answer.working_counter != 0);
-  const bool gave = has_inputs && (both ? (answer.working_counter & 1U) != 0 : answer.working_counter != 0);
-  if (took) slave.taken = std::max(slave.taken, flight.cycle);
+  const auto expected = expected_counter(flight.command, has_outputs, has_inputs);
+  if (answer.working_counter != expected) {
+    const bool both = flight.command == Command::lrw;
+    if (has_outputs && !(both && answer.working_counter == kTaken)) ++slave.counts.short_outputs;
+    if (has_inputs && !(both && answer.working_counter == kGiven)) ++slave.counts.short_inputs;
+    slave.counts.counter = answer.working_counter;
+    slave.counts.expected = expected;
+    return count(slave, flight, false);
+  }
+  if (has_outputs) slave.taken = std::max(slave.taken, flight.cycle);
   // One that was overtaken brings what is past.
-  if (gave && flight.cycle > slave.given) {
+  if (has_inputs && flight.cycle > slave.given) {
     const auto data = answer.data.last(slave.inputs.size());
     std::copy(data.begin(), data.end(), slave.inputs.begin());
     slave.given = flight.cycle;
     slave.given_at = answer.sent;
   }
-  if (has_outputs && !took) ++slave.counts.short_outputs;
-  if (has_inputs && !gave) ++slave.counts.short_inputs;
-  count(slave, flight, took == has_outputs && gave == has_inputs);
+  count(slave, flight, true);
 }
 
 /// A slave that is read and written apart misses a cycle when it misses one half.

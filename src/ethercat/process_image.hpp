@@ -36,6 +36,8 @@ class ProcessImage {
     std::uint64_t short_outputs = 0;  ///< Frames whose outputs it did not take.
     std::uint64_t short_inputs = 0;   ///< Frames whose inputs it did not give.
     unsigned missing = 0;             ///< Cycles in succession that were not whole.
+    std::uint16_t counter = 0;        ///< Working counter of the last cycle that was not whole.
+    std::uint16_t expected = 0;       ///< What it should have been; 0: its frame did not come back.
   };
   /// What was counted of the cycles.
   struct Rhythm {
@@ -65,7 +67,8 @@ class ProcessImage {
   Result<Cycle> set(std::uint8_t node, ObjectAddress object, ByteSpan value);
   /// As it was set; empty when it was not, or is no output.
   std::optional<Bytes> output(std::uint8_t node, ObjectAddress object) const;
-  /// Whether the slave has taken a cycle that carried what was set.
+  /// Whether the slave has taken a cycle that carried what was set, and has confirmed it by the exact working
+  /// counter: of a cycle with any other counter nothing is believed.
   bool is_written(std::uint8_t node, Cycle cycle) const;
   /// What it gave last; empty when it is no input, or nothing came yet.
   std::optional<Input> input(std::uint8_t node, ObjectAddress object) const;

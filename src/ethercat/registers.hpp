@@ -14,6 +14,7 @@ inline constexpr std::uint16_t kRamSize = 0x0006;              ///< u8, in KiB
 inline constexpr std::uint16_t kPorts = 0x0007;                ///< u8, 2 bits a port
 inline constexpr std::uint16_t kFeatures = 0x0008;             ///< u16
 inline constexpr std::uint16_t kFeatureDc = 1U << 2U;          ///< It has distributed clocks.
+inline constexpr std::uint16_t kFeatureDc64 = 1U << 3U;        ///< … of 64 bits; else of 32.
 inline constexpr std::uint16_t kFeatureNoLrw = 1U << 9U;       ///< Its FMMUs know LRD and LWR, not LRW.
 inline constexpr std::uint16_t kFeatureFixedFmmu = 1U << 11U;  ///< FMMUs and sync managers cannot be set.
 

@@ -60,8 +60,11 @@ struct Answer {
   std::uint16_t working_counter = 0;  ///< 0: no slave did it.
   bool lost = false;                  ///< The frame did not come back: whether it was done is not known.
   TimePoint sent;                     ///< When its frame was taken to be sent, the last time.
+  std::uint16_t expected = 0;         ///< Counter of a request to one slave; 0: it went to all of them.
 
-  bool done() const { return !lost && working_counter != 0; }
+  /// It was done, by as many slaves as it was for. Any other counter is wrong: two slaves have one address,
+  /// or the frame is not what the slaves made of it.
+  bool done() const { return !lost && (expected == 0 ? working_counter != 0 : working_counter == expected); }
 };
 
 }  // namespace servoctl::ethercat

@@ -36,7 +36,7 @@ std::optional<Request> RequestSequence::take_request() {
 void RequestSequence::on_answer(const Answer& answer, TimePoint) {
   if (!busy()) return;
   const auto& request = requests_[next_];
-  const bool none = answer.working_counter == 0 && !is_broadcast(request.command);
+  const bool none = !answer.done() && !is_broadcast(request.command);
   if (answer.lost || none) {
     const auto what = fmt::format("register {:04X}h cannot be {}: {}", request.address >> 16U,
                                   writes(request.command) ? "written" : "read",

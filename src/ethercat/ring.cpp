@@ -19,8 +19,15 @@ bool address_returns(Command command) {
   }
 }
 
-/// One slave does it, or nobody: any other counter than 0 is whole.
+/// One slave does it, or nobody.
 bool is_for_one(Command command) { return command >= Command::aprd && command <= Command::fprw; }
+
+/// What one slave adds to the working counter: 1 for each of reading and writing, 3 for both
+/// (ETG.1000.4, 5.4).
+std::uint16_t counter_of_one(Command command) {
+  if (!is_for_one(command)) return 0;
+  return command == Command::aprw || command == Command::fprw ? 3 : 1;
+}
 
 }  // namespace
 
@@ -124,7 +131,7 @@ void Ring::pack(FrameWriter& writer, std::vector<std::uint8_t>& queue, std::uint
     if (!writer.add(slot.command, queue[packed], slot.address, slot.data)) break;
     slot.state = State::in_flight;
     slot.flight = flight;
-    slot.answer = {{}, 0, true, now};
+    slot.answer = {{}, 0, true, now, counter_of_one(slot.command)};
     ++flights_[flight].open;
     const auto timeout = slot.how.timeout > Duration{} ? slot.how.timeout : options_.timeout;
     flights_[flight].deadline = std::max(flights_[flight].deadline, now + timeout);

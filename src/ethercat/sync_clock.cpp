@@ -28,15 +28,16 @@ bool demands_clock(std::uint16_t al_code) {
   return std::find(kCodes.begin(), kCodes.end(), al_code) != kCodes.end();
 }
 
-Request SyncClock::ask_time() const { return read_registers(slave_, reg::kDcSystemTime, 8); }
+Request SyncClock::ask_time() const { return read_registers(slave_, reg::kDcSystemTime, size()); }
 
 std::vector<Request> SyncClock::start(std::uint64_t slave_time) {
   const auto cycle = static_cast<std::uint64_t>(nanoseconds(cycle_));
+  time_ = slave_time;
   first_ = (slave_time + kLead + cycle - 1) / cycle * cycle;
   locked_ = false;
   return {write_registers(slave_, reg::kDcActivation, {0}),
           write_registers(slave_, reg::kDcCyclicControl, {0}),
-          write_registers(slave_, reg::kDcStart, store_le(first_, 8)),
+          write_registers(slave_, reg::kDcStart, store_le(first_, size())),
           write_registers(slave_, reg::kDcSync0Cycle, store_le(cycle, 4)),
           write_registers(slave_, reg::kDcActivation, {kCyclicSync0})};
 }
@@ -48,7 +49,7 @@ void SyncClock::serve(Ring& ring, ProcessImage& image) {
     const auto answer = ring.take_answer(*ticket_);
     if (!answer) return;
     ticket_.reset();
-    if (answer->done() && answer->data.size() == 8) measure(load_le(answer->data), image);
+    if (answer->done() && answer->data.size() == size()) measure(counted_on(load_le(answer->data)), image);
   }
   if (image.rhythm().cycles == cycles_) return;
   cycles_ = image.rhythm().cycles;
@@ -58,6 +59,15 @@ void SyncClock::serve(Ring& ring, ProcessImage& image) {
   how.timeout = cycle_ * 2;
   const auto request = ask_time();
   ticket_ = ring.post(request.command, request.address, request.data, how);
+}
+
+/// Less than half a wrap has passed since the time was seen last: it is asked for in every cycle.
+std::uint64_t SyncClock::counted_on(std::uint64_t shown) {
+  constexpr unsigned kWide = 64;
+  if (bits_ == kWide) return shown;
+  const auto passed = static_cast<std::uint32_t>(shown) - static_cast<std::uint32_t>(time_);
+  time_ += static_cast<std::uint64_t>(std::int64_t{static_cast<std::int32_t>(passed)});
+  return time_;
 }
 
 /// The frame of this cycle passed the slave at that time.

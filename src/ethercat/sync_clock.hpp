@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -20,10 +21,12 @@ bool demands_clock(std::uint16_t al_code);
 /// their own: nothing is distributed. Performs no I/O and reads no clock.
 class SyncClock {
  public:
-  /// `cycle` is that of the image: 1 ms to 1 s.
-  SyncClock(SlaveAddress slave, Duration cycle) : slave_(slave), cycle_(cycle) {}
+  /// `cycle` is that of the image: 1 ms to 1 s. `bits`: of the slave's clock, 64 or 32 (0008h bit 3); one of
+  /// 32 begins anew every 4.29 s, and is counted on here.
+  SyncClock(SlaveAddress slave, Duration cycle, unsigned bits = 64)
+      : slave_(slave), cycle_(cycle), bits_(bits) {}
 
-  /// Asks the slave for its time: 8 bytes, ns.
+  /// Asks the slave for its time: 8 bytes, or 4, ns.
   Request ask_time() const;
   /// The writes that switch SYNC0 on, at this time of the slave; the first pulse comes 100 ms later, rounded
   /// up to whole cycles. In PRE-OP.
@@ -42,9 +45,13 @@ class SyncClock {
 
  private:
   void measure(std::uint64_t slave_time, ProcessImage& image);
+  std::uint64_t counted_on(std::uint64_t shown);
+  std::size_t size() const { return bits_ / 8; }
 
   SlaveAddress slave_;
   Duration cycle_;
+  unsigned bits_;
+  std::uint64_t time_ = 0;   ///< Of the slave, seen last, without its wraps.
   std::uint64_t first_ = 0;  ///< Time of the slave at the first pulse.
   std::uint64_t cycles_ = 0;
   std::optional<Ring::Ticket> ticket_;

@@ -16,6 +16,7 @@ class DialogueRun {
   DialogueRun(session::Session& session, std::span<Dialogue* const> dialogues) : session_(&session) {
     for (auto* dialogue : dialogues)
       channels_.push_back({dialogue, new_channel(dialogue->node()), TimePoint::min(), false});
+    signals_ = signals();
   }
 
   void run(const std::function<bool(const Error&)>& bus_back) {
@@ -39,7 +40,23 @@ class DialogueRun {
     bool done;
     session::SdoRequest request = {};  ///< That is under way.
     TimePoint begun = {};
+    bool hastens = false;  ///< A signal came that it was not told of.
   };
+
+  unsigned signals() const { return session_->options().signals ? session_->options().signals() : 0; }
+
+  /// The signal that ended a motion is not counted: it came before.
+  void hear_signals() {
+    const auto before = std::exchange(signals_, signals());
+    if (before == signals_) return;
+    for (auto& channel : channels_) {
+      channel.hastens = true;
+      channel.pause = TimePoint::min();
+    }
+    if (session_->options().tell)
+      session_->options().tell(
+          "signal received: the drives are still being stopped; servoctl ends after that");
+  }
 
   std::unique_ptr<session::ObjectChannel> new_channel(std::uint8_t node) {
     return session_->network().object_channel(node, session_->options().timeout);
@@ -49,6 +66,7 @@ class DialogueRun {
   Result<void> round() {
     auto next = kNever;
     open_ = 0;
+    hear_signals();
     for (auto& channel : channels_) {
       if (channel.done) continue;
       if (const auto went = advance(channel); !went) return went;
@@ -72,6 +90,7 @@ class DialogueRun {
         continue;
       }
       if (channel.objects->busy() || session_->now() < channel.pause) return {};
+      if (std::exchange(channel.hastens, false)) channel.dialogue->hasten(session_->now());
       auto step = channel.dialogue->next(session_->now());
       channel.done = step.done;
       if (step.done) return {};
@@ -130,6 +149,7 @@ class DialogueRun {
   std::vector<Lane> channels_;
   std::size_t open_ = 0;
   int remarks_ = 0;
+  unsigned signals_ = 0;   ///< That were heard.
   int lost_in_a_row_ = 0;  ///< Without an answer in between.
 };
 

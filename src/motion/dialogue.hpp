@@ -34,6 +34,8 @@ class Dialogue {
   /// Asked when nothing is under way.
   virtual DialogueStep next(TimePoint now) = 0;
   virtual void on_answer(Result<Bytes> answer, TimePoint now) = 0;
+  /// Another signal came while it went on. Called when nothing is under way.
+  virtual void hasten(TimePoint) {}
   /// The bus was lost and is back: whatever was under way is not.
   virtual void on_bus_back() = 0;
   /// What may help when nothing can be asked any more; sent without waiting, and whether it arrives is not

@@ -11,6 +11,7 @@
 #include "motion/motion_kinds.hpp"
 #include "motion/other_axes.hpp"
 #include "motion/producer_claim.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -79,6 +80,8 @@ Result<void> Motion::find_watchdog() {
 Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
   auto items = look_at_drive(chinese);
   if (!items) return items;
+  chinese_ = chinese;
+  shown_ = *items;
   // What refuses the motion needs no second of listening.
   if (check_preflight(*items, node_)) {
     if (const auto found = find_watchdog(); !found) return fail(found.error());
@@ -184,11 +187,17 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
   guard_->set_standstill(standstill_);
   session::Rehearsal unused;
   if (const auto ready = make_ready(*guard_, mode, settings, kept_target, unused); !ready) return ready;
+  if (const auto fine = look_in_op(); !fine) return fine;
   (void)session_->take_events();  // What was told before is no news of this motion.
   monitor_->expect_mode(mode);
   auto enabled = guard_->enable();
   monitor_->on_written();
   return enabled;
+}
+
+Result<void> Motion::look_in_op() {
+  if (!guard_->needs_process_data()) return {};
+  return motion::look_in_op(*session_, *units_, node_, chinese_, shown_, options_.ask_again, request());
 }
 
 /// All that is done before it is enabled.
@@ -236,7 +245,10 @@ Result<std::vector<session::PlannedMessage>> Motion::rehearse(const MotionPlan& 
 }
 
 Result<void> Motion::write(ObjectAddress object, const Bytes& data) {
+  const session::Hurry hurry(*session_, kMovingPatience, 1);
   auto done = guard_->change(object, data);
+  // The late answer to a read that the time cut short may have come first.
+  if (!done && done.error().code == Errc::protocol) done = guard_->change(object, data);
   monitor_->on_written();
   return done;
 }

@@ -37,6 +37,7 @@ struct MotionOptions {
   bool ignores_remote = false;    ///< As PreflightRequest::ignores_remote.
   bool rehearsal = false;         ///< Nothing is to be sent: the bus is not listened to for a second.
   std::function<bool()> unheard;  ///< Nobody takes the samples any more: the motion ends. May be empty.
+  AskAgain ask_again;             ///< About what a drive tells in OP only; empty: it refuses the motion.
 };
 
 /// What came of a motion.
@@ -80,6 +81,8 @@ class Motion {
   Result<std::vector<PreflightItem>> look(bool chinese);
   /// The part of look() that is about the drive alone.
   Result<std::vector<PreflightItem>> look_at_drive(bool chinese);
+  /// What the motion is for, and what was said for its preflight.
+  PreflightRequest request() const { return {purpose_, options_.panel, options_.ignores_remote}; }
 
   /// Looks once more, because a person may have taken time to answer: Errc::refused when somebody else has
   /// enabled the drive meanwhile. Then arms the watchdog, sets the mode, makes the targets harmless, writes
@@ -157,6 +160,7 @@ class Motion {
   Result<std::optional<double>> monitored_speed();
   Error quarrel(double shown, double speed) const;
   Result<void> look_again();
+  Result<void> look_in_op();
   Result<void> make_ready(MotionGuard& guard, std::int8_t mode, const std::vector<MotionSetting>& settings,
                           std::optional<ObjectAddress> kept_target, session::Rehearsal& rehearsal);
   Error without_first_axis(Error error) const;
@@ -181,6 +185,8 @@ class Motion {
   std::unique_ptr<MotionGuard> guard_;
   WatchdogPlan watchdog_;
   bool watchdog_found_ = false;
+  bool chinese_ = false;
+  std::vector<PreflightItem> shown_;  ///< What look() has found.
   Result<double> speed_cap_ = 0.0;
   double standstill_ = 0;
   std::optional<Purpose> purpose_;

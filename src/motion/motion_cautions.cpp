@@ -18,7 +18,7 @@ Result<void> Motion::intend(const Purpose& purpose) {
 }
 
 Result<std::vector<PreflightItem>> Motion::look_at_drive(bool chinese) {
-  return preflight(*session_, *units_, node_, chinese, {purpose_, options_.panel, options_.ignores_remote});
+  return preflight(*session_, *units_, node_, chinese, request());
 }
 
 /// The least of what cautions say that hold, or may hold.

@@ -55,14 +55,16 @@ std::optional<ObjectAddress> MotionGuard::foreign_command() const {
 
 Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
   own_.insert(object);
-  const auto before = session_->upload(node_, object);
-  if (!before) return fail(before.error());
   const auto* rehearsed = rehearsal_ != nullptr ? rehearsal_->held(object) : nullptr;
-  if ((rehearsed != nullptr ? *rehearsed : *before) == data) return {};
-  // Noted first: an answer that is lost may belong to a write that was done.
+  if (rehearsed != nullptr && *rehearsed == data) return {};
   const bool known =
       std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
-  if (!known) changed_.push_back({object, *before});
+  if (known) return write(object, data);
+  const auto before = session_->upload(node_, object);
+  if (!before) return fail(before.error());
+  if (rehearsed == nullptr && *before == data) return {};
+  // Noted first: an answer that is lost may belong to a write that was done.
+  changed_.push_back({object, *before});
   return write(object, data);
 }
 
@@ -78,6 +80,7 @@ Result<void> MotionGuard::change_mode(std::int8_t mode) {
   if (!before) return fail(before.error());
   changed_.push_back({objects::kModeOfOperation, *before});
   own_.insert(objects::kModeOfOperation);
+  mode_ = mode;
   if (rehearsal_ != nullptr) {
     const auto planned = mode_write(units_->profile(), node_, mode);
     return write(planned.object, *planned.data);

@@ -38,8 +38,9 @@ class MotionGuard {
   /// From now on nothing is sent: what would be goes there, which outlives this. To be called first.
   void rehearse(session::Rehearsal& rehearsal) { rehearsal_ = &rehearsal; }
 
-  /// Writes an object, after its value was kept; end() puts it back. One that holds the bytes already is not
-  /// written.
+  /// Writes an object, after its value was kept; end() puts it back. The first time one that holds the bytes
+  /// already is not written. One that was written before is written again without a look: a motor that is to
+  /// be stopped does not wait for an answer.
   Result<void> change(ObjectAddress object, const Bytes& data);
   /// The same for the mode of operation; waits until the drive is in it.
   Result<void> change_mode(std::int8_t mode);
@@ -82,6 +83,7 @@ class MotionGuard {
   void rehearse_up(const std::vector<drive::PowerStep>& path);
   void rehearse_end();
   bool stays_new(const Changed& changed) const;
+  std::optional<session::SdoRequest> zero_target() const;
   PowerDownPlan way_down();
   void bring_down();
   void put_back();
@@ -105,6 +107,7 @@ class MotionGuard {
   Power power_;
   session::Protection::Hold hold_;
   std::vector<Changed> changed_;
+  std::optional<std::int8_t> mode_;  ///< That was chosen for the motion.
   std::optional<WatchdogPlan> watchdog_;
   bool started_ = false;      ///< It was told to become operational.
   bool held_before_ = false;  ///< Process data were exchanged with it in OP already.

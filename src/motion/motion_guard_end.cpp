@@ -51,22 +51,23 @@ void MotionGuard::return_to_op() {
   if (const auto back = renew_op(*session_, node_); !back) result_.notes.push_back(back.error().message);
 }
 
-/// Halt where there is one, target to zero, a quick stop when that does not help, then 07h and 00h.
+/// Of the mode that was chosen; in one that goes to a position no target stops the motor.
+std::optional<session::SdoRequest> MotionGuard::zero_target() const {
+  const auto& rules = units_->profile().rules.motion;
+  if (!mode_ || (mode_ != rules.velocity && mode_ != rules.torque)) return std::nullopt;
+  const auto target = mode_ == rules.velocity ? objects::kTargetVelocity : objects::kTargetTorque;
+  return session::SdoRequest{node_, target, Bytes(od::size_of(units_->meaning(target).type).value_or(4), 0)};
+}
+
+/// Target to zero, halt where there is one, a quick stop when that does not help, then 07h and 00h.
 PowerDownPlan MotionGuard::way_down() {
   PowerDownPlan plan;
   plan.node = node_;
   plan.aim = PowerAim::stop_and_disable;
   plan.keeps_exchange = held_before_;
-  const auto& rules = units_->profile().rules.motion;
   auto& gentle = plan.gentle.emplace();
-  gentle.halt = rules.halt;
-  for (const auto& [mode, target] : {std::pair{rules.velocity, objects::kTargetVelocity},
-                                     std::pair{rules.torque, objects::kTargetTorque}}) {
-    if (!mode) continue;
-    const auto size = od::size_of(units_->meaning(target).type).value_or(4);
-    gentle.targets.emplace_back(static_cast<std::int8_t>(*mode),
-                                session::SdoRequest{node_, target, Bytes(size, 0)});
-  }
+  gentle.halt = units_->profile().rules.motion.halt;
+  gentle.zero_target = zero_target();
   plan.speed = [this](ByteSpan bytes) -> std::optional<double> {
     const auto speed = units_->physical(objects::kVelocityActual, bytes);
     return speed ? std::optional(std::abs(speed->value)) : std::nullopt;

@@ -100,8 +100,10 @@ class Learning {
     return judge();
   }
 
+  /// With the look at its end.
   Result<void> watch(Duration length) {
-    const auto watched = motion_->watch([this](const MotionSample& sample) { return look(sample); }, length);
+    const auto watched = motion_->watch([this](const MotionSample& sample) { return look(sample); },
+                                        length + MotionMonitor::kPeriod);
     if (!watched) return fail(watched.error());
     return {};
   }

@@ -79,6 +79,15 @@ Result<Value> planned(const show::Desk& desk, Motion& motion, const MotionPlan& 
                       {"steps", std::move(steps)}});
 }
 
+/// Of a motion that is refused.
+Value without_steps(std::uint8_t node, const MotionPlan& plan, const std::vector<PreflightItem>& items) {
+  return Value(Record{{"node", node},
+                      {"motion", plan.summary},
+                      {"watchdog", Value(), Show::json},
+                      {"preflight", preflight_table(items)},
+                      {"steps", Value(), Show::json}});
+}
+
 Result<void> ask(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
                  const std::vector<PreflightItem>& items, const std::vector<std::string>& notes) {
   desk.tell(preflight_text(items, desk.chinese));
@@ -94,6 +103,14 @@ void take(const KnownTurn& known, MotionOptions& options) {
 }
 
 }  // namespace
+
+AskAgain ask_again(show::Desk& desk, std::uint8_t node) {
+  return [&desk, node](const std::vector<PreflightItem>& unseen) {
+    desk.tell(preflight_text(unseen, desk.chinese));
+    return desk.confirm(
+        fmt::format("Node {} reports this in OP, and did not report it before. Go on?", node));
+  };
+}
 
 Result<void> check_motion(const show::Desk& desk, const MotionRequest& request,
                           const std::function<Result<MotionPlan>(Motion&)>& plan) {
@@ -112,6 +129,7 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   const auto node = request.node;
   const auto& csv = request.csv;
   auto options = request.options;
+  options.ask_again = ask_again(desk, node);
   if (!csv.empty() && !desk.dry_run)
     if (const auto possible = check_writable(csv); !possible) return fail(possible.error());
   if (run.in_counts) options.turn.reset();
@@ -136,11 +154,7 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   if (desk.dry_run && possible) return planned(desk, motion, *plan, *items);
   if (desk.dry_run) {
     desk.errors.push_back(possible.error());
-    return Value(Record{{"node", node},
-                        {"motion", plan->summary},
-                        {"watchdog", Value(), Show::json},
-                        {"preflight", preflight_table(*items)},
-                        {"steps", Value(), Show::json}});
+    return without_steps(node, *plan, *items);
   }
   if (!possible) return fail(possible.error());
   if (const auto answer = ask(desk, node, *plan, *items, notes); !answer) return fail(answer.error());

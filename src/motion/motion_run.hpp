@@ -37,6 +37,9 @@ MotionRun motion_run(const Kind& kind, Result<MotionPlan> (*plan)(Motion&, const
 Result<void> check_motion(const show::Desk& desk, const MotionRequest& request,
                           const std::function<Result<MotionPlan>(Motion&)>& plan);
 
+/// Shows cautions that a drive tells in OP only, and asks. `desk` outlives the answer.
+AskAgain ask_again(show::Desk& desk, std::uint8_t node);
+
 /// Looks, shows the pre-flight list, asks, moves, and tells how the drive was left. With --dry-run the drive
 /// is looked at and nothing is written.
 Result<report::Value> run_motion(show::Desk& desk, const MotionRequest& request, const MotionRun& run);

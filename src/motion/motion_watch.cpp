@@ -1,8 +1,10 @@
 // How a motion is watched until it is over, or has to end.
 #include <fmt/format.h>
+#include <algorithm>
 #include <new>
 
 #include "motion/motion.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::motion {
 
@@ -16,14 +18,27 @@ Result<bool> Motion::watch(const std::function<Result<bool>(const MotionSample&)
   }
 }
 
+/// It ends by time, and not behind an answer that comes late or never: what is asked of the drive then, the
+/// time cuts short.
 Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSample&)>& done,
                                Duration longest) {
   const auto end = session_->now() + longest;
+  // Without a length it is one look.
+  const auto limit = longest > Duration::zero() ? std::min(end, session_->options().until) : kNever;
+  const session::OptionScope until(*session_, &session::Options::until, limit);
+  const auto is_over = [&](const Error& error) {
+    const auto& cancelled = session_->options().cancelled;
+    return error.code == Errc::interrupted && session_->now() >= end && !(cancelled && cancelled());
+  };
   for (;;) {
     const auto sample = monitor_->sample(end);
+    if (!sample && is_over(sample.error())) return false;
     if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
     if (!sample) return fail(sample.error());
-    if (const auto fits = check_turn(*sample); !fits) return fail(fits.error());
+    if (const auto fits = check_turn(*sample); !fits) {
+      if (is_over(fits.error())) return false;
+      return fail(fits.error());
+    }
     if (const auto object = guard_ ? guard_->foreign_command() : std::nullopt)
       return fail(error(Errc::negative,
                         fmt::format("another master wrote object {} while moving", to_string(*object)),
@@ -33,7 +48,9 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
     const auto enough = done(*sample);
     if (!enough || *enough) return enough;
     if (session_->now() >= end) return false;
-    if (const auto waited = monitor_->wait_for_next(); !waited) return fail(waited.error());
+    const auto waited = monitor_->wait_for_next();
+    if (!waited && is_over(waited.error())) return false;
+    if (!waited) return fail(waited.error());
   }
 }
 

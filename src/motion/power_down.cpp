@@ -18,8 +18,13 @@ namespace {
 using drive::DriveState;
 
 constexpr Duration kStepPause = std::chrono::milliseconds(5);
-/// Answers in a row that do not come.
+/// Two cycles of a ring: each word is sent before the next one takes its place.
+constexpr Duration kWordPause = std::chrono::milliseconds(10);
+/// Answers that do not come before a drive is given up. A write that is acknowledged is no such answer: it
+/// says nothing about the state.
 constexpr int kMostSilences = 4;
+/// On a ring: target 0, 02h twice, 07h and 00h, and 00h again after the exchange was ended.
+constexpr int kMostSilencesOnRing = 6;
 /// Where there may be no drive at all.
 constexpr int kFewSilences = 2;
 /// A message that names so many nodes is read by nobody.
@@ -48,13 +53,15 @@ bool PowerDownResult::is_without_power() const { return motion::is_without_power
 PowerDown::PowerDown(PowerDownPlan plan) : plan_(std::move(plan)) { begin(); }
 
 void PowerDown::begin() {
-  state_ = plan_.gentle                     ? State::look
+  state_ = plan_.gentle                     ? (plan_.gentle->zero_target ? State::zero_target : State::look)
            : plan_.aim == PowerAim::disable ? State::switch_off
                                             : State::quick_stop;
   pause_ = TimePoint::min();
-  has_seen_ = gently_ = woken_ = false;
+  has_seen_ = gently_ = woken_ = stopped_again_ = false;
   silences_ = 0;
   tries_ = means_ = held_ = 0;
+  begun_.reset();
+  stop_since_.reset();
   first_speed_.reset();
   standing_since_.reset();
   untaken_ = "no answer";
@@ -89,7 +96,10 @@ std::string PowerDown::word() const {
 }
 
 DialogueStep PowerDown::next(TimePoint now) {
-  if (now < pause_) return {.pause = pause_};
+  if (!begun_) begun_ = now;
+  if (state_ != State::done && now >= *begun_ + kLongest)
+    plan_.aim == PowerAim::stop ? end_stop() : end_cut();
+  if (now < pause_ && state_ != State::done) return {.pause = pause_};
   switch (state_) {
     case State::look:
     case State::slowing:
@@ -98,14 +108,13 @@ DialogueStep PowerDown::next(TimePoint now) {
     case State::cutting: return {.request = read(objects::kStatusword)};
     case State::holding: return {.request = read(objects::kControlword)};
     case State::halt: return {.request = command(kHalted)};
-    case State::read_mode: return {.request = read(objects::kModeDisplay)};
-    case State::zero_target: {
-      const auto& targets = plan_.gentle->targets;
-      return {.request = targets[static_cast<std::size_t>(tries_)].second};
-    }
+    case State::zero_target: return {.request = *plan_.gentle->zero_target};
     case State::slowing_speed:
     case State::stopping_speed: return {.request = read(objects::kVelocityActual)};
-    case State::quick_stop: result_.quick_stop = true; return {.request = command(kQuickStopWord)};
+    case State::quick_stop:
+      result_.quick_stop = true;
+      if (!stop_since_) stop_since_ = now;
+      return {.request = command(kQuickStopWord)};
     case State::switch_off: return {.request = command(kSwitchOffWord)};
     case State::cut: return {.request = command(kDisableVoltageWord)};
     case State::last_state:
@@ -122,15 +131,16 @@ DialogueStep PowerDown::next(TimePoint now) {
 
 void PowerDown::on_answer(Result<Bytes> answer, TimePoint now) {
   if (!answer && answer.error().code == Errc::timeout) return on_silence(answer.error(), now);
-  silences_ = 0;
+  const bool is_read = state_ == State::look || state_ == State::slowing || state_ == State::slowing_speed ||
+                       state_ == State::stopping || state_ == State::stopping_speed ||
+                       state_ == State::switching_off || state_ == State::cutting || state_ == State::holding;
+  if (is_read) silences_ = 0;
   plan_.may_be_absent = false;
   switch (state_) {
+    case State::zero_target: gently_ = answer.has_value(); return enter(State::look, now);
     case State::look: return on_look(answer, now);
-    case State::halt: gently_ = gently_ || answer.has_value(); return enter(State::read_mode, now);
-    case State::read_mode: return on_mode(answer, now);
-    case State::zero_target:
+    case State::halt:
       gently_ = gently_ || answer.has_value();
-      tries_ = 0;
       return enter(gently_ ? State::slowing : State::quick_stop, now);
     case State::slowing: return on_slowing(answer, now);
     case State::slowing_speed: return on_slowing_speed(answer, now);
@@ -160,32 +170,72 @@ void PowerDown::poll_again(State state, TimePoint now) {
   pause_ = now + kStepPause;
 }
 
-/// An answer may be lost, so it is asked again. Then the node may be one that was sent NMT "stop": it answers
-/// no SDO. What is dead at last has been sent the commands all the same.
+bool PowerDown::is_on_ring() const { return plan_.network != nullptr && plan_.network->is_ring(); }
+
+void PowerDown::end_silent(const Error& error) {
+  result_.silent = true;
+  result_.written = false;
+  unread_ = error;
+  result_.statusword.reset();
+  finish(fail(error));
+}
+
+/// An answer may be lost, so it is asked again, after the word that stops the motor. Then the node may be one
+/// that was sent NMT "stop": it answers no SDO. What is dead at last has been sent the commands all the same.
 void PowerDown::on_silence(const Error& error, TimePoint now) {
-  const bool cutting = state_ >= State::switch_off && plan_.aim != PowerAim::stop;
-  if (state_ == State::stopping) state_ = State::quick_stop;
-  if (state_ == State::cutting) state_ = State::cut;
-  if (++silences_ == 1 && !plan_.may_be_absent) return;
-  if (!std::exchange(told_silence_, true) && plan_.on_silence) plan_.on_silence();
-  if (silences_ >= (plan_.may_be_absent ? kFewSilences : kMostSilences)) {
-    result_.silent = true;
-    result_.written = false;
-    unread_ = error;
-    result_.statusword.reset();
-    return finish(fail(error));
+  ++silences_;
+  const bool leaves_exchange = is_on_ring() && plan_.aim != PowerAim::stop && !plan_.may_be_absent;
+  const int most = plan_.may_be_absent ? kFewSilences : leaves_exchange ? kMostSilencesOnRing : kMostSilences;
+  if (silences_ >= most) {
+    if (!is_on_ring() && !std::exchange(told_silence_, true) && plan_.on_silence) plan_.on_silence();
+    return end_silent(error);
   }
+  if (leaves_exchange) return go_on_blindly(now);
+  const bool cutting = state_ >= State::switch_off && plan_.aim != PowerAim::stop;
+  const bool may_turn = state_ <= State::slowing_speed && !gently_;
+  if (state_ == State::zero_target)
+    state_ = State::look;
+  else if (may_turn || state_ == State::stopping)
+    state_ = State::quick_stop;
+  else if (state_ == State::cutting)
+    state_ = State::cut;
+  if (silences_ == 1 && !plan_.may_be_absent) return;
+  if (!std::exchange(told_silence_, true) && plan_.on_silence) plan_.on_silence();
+  wake_or_cut(cutting, now);
+}
+
+void PowerDown::wake_or_cut(bool cutting, TimePoint now) {
   if (std::exchange(woken_, true)) {
     if (cutting || plan_.aim != PowerAim::stop) enter(State::cut, now);
     return;
   }
-  const bool ring = plan_.network != nullptr && plan_.network->is_ring();
   const auto sent = order(session::NodeState::pre_operational);
   result_.notes.push_back(
-      ring ? fmt::format("it did not answer and was sent {}", sent)
-           : fmt::format("it did not answer and was sent {}: a stopped node does not answer", sent));
+      is_on_ring() ? fmt::format("it did not answer and was sent {}", sent)
+                   : fmt::format("it did not answer and was sent {}: a stopped node does not answer", sent));
   back_to_ = cutting ? State::cut : State::quick_stop;
+  stop_since_.reset();
   state_ = State::wake;
+}
+
+/// On a ring every word is in the outputs before the request of PRE-OP ends the exchange that carries them.
+void PowerDown::go_on_blindly(TimePoint now) {
+  if (state_ >= State::switch_off) {
+    pause_ = now + kWordPause;
+    if (state_ == State::switch_off || state_ == State::switching_off) return enter(State::cut, now);
+    return wake_or_cut(true, now);
+  }
+  if (state_ < State::quick_stop || !std::exchange(stopped_again_, true))
+    return enter(State::quick_stop, now);
+  pause_ = std::max(now, stop_since_.value_or(now) + kBlindStop);
+  enter(State::switch_off, now);
+}
+
+/// Another signal came: what is stopped gently is stopped as fast as it can.
+void PowerDown::hasten(TimePoint now) {
+  if (state_ == State::look || state_ == State::halt || state_ == State::slowing ||
+      state_ == State::slowing_speed)
+    enter(State::quick_stop, now);
 }
 
 DriveState PowerDown::take_state(const Result<Bytes>& answer) {

@@ -28,8 +28,8 @@ enum class PowerAim : std::uint8_t {
 /// How a motion is ended before a quick stop is needed.
 struct GentleStop {
   bool halt = false;  ///< By bit 8 of 6040h.
-  std::vector<std::pair<std::int8_t, session::SdoRequest>>
-      targets;  ///< By mode: what sets its target to zero.
+  /// Sets the target of the mode to zero, where that stops the motor: written before anything is read.
+  std::optional<session::SdoRequest> zero_target;
 };
 
 /// How one drive is taken down.
@@ -43,8 +43,10 @@ struct PowerDownPlan {
   double standstill = 0;
   /// Gives the words for what is sent beside controlwords; set by take_down().
   const session::Network* network = nullptr;
-  bool keeps_exchange = false;            ///< Process data go on behind it; else they end with its power.
-  std::function<void()> on_silence = {};  ///< Called once, when the drive does not answer for the first time.
+  bool keeps_exchange = false;  ///< Process data go on behind it; else they end with its power.
+  /// Called once, when the drive does not answer. Not on a ring: there it would end the cycles that carry
+  /// the stop words.
+  std::function<void()> on_silence = {};
   /// Nothing tells that there is a drive of this number: without an answer it is woken at once, and asked
   /// once more.
   bool may_be_absent = false;
@@ -85,6 +87,10 @@ class PowerDown final : public Dialogue {
   static constexpr Duration kPatience = std::chrono::seconds(1);
   /// Longest wait for the end of a quick stop; its ramp (6085h) is the machine's.
   static constexpr Duration kQuickStopPatience = std::chrono::seconds(3);
+  /// Time for the ramp of a quick stop when nothing can be read; then 07h and 00h are sent.
+  static constexpr Duration kBlindStop = std::chrono::milliseconds(200);
+  /// Longest way down, whatever comes back: each step has a limit, but a drive can make many of them.
+  static constexpr Duration kLongest = std::chrono::seconds(15);
 
   explicit PowerDown(PowerDownPlan plan);
 
@@ -92,6 +98,7 @@ class PowerDown final : public Dialogue {
   DialogueStep next(TimePoint now) override;
   void on_answer(Result<Bytes> answer, TimePoint now) override;
   void on_bus_back() override;
+  void hasten(TimePoint now) override;
   std::optional<session::SdoRequest> last_word() const override;
   void on_end(const Error& error) override;
 
@@ -100,10 +107,9 @@ class PowerDown final : public Dialogue {
 
  private:
   enum class State : std::uint8_t {
+    zero_target,
     look,
     halt,
-    read_mode,
-    zero_target,
     slowing,
     slowing_speed,
     quick_stop,
@@ -124,9 +130,12 @@ class PowerDown final : public Dialogue {
   void enter(State state, TimePoint now);
   void poll_again(State state, TimePoint now);
   void on_silence(const Error& error, TimePoint now);
+  void wake_or_cut(bool cutting, TimePoint now);
+  void go_on_blindly(TimePoint now);
+  void end_silent(const Error& error);
+  bool is_on_ring() const;
   drive::DriveState take_state(const Result<Bytes>& answer);
   void on_look(const Result<Bytes>& answer, TimePoint now);
-  void on_mode(const Result<Bytes>& answer, TimePoint now);
   void on_slowing(const Result<Bytes>& answer, TimePoint now);
   void on_slowing_speed(const Result<Bytes>& answer, TimePoint now);
   void on_quick_stop(const Result<Bytes>& answer, TimePoint now);
@@ -152,16 +161,19 @@ class PowerDown final : public Dialogue {
   PowerDownPlan plan_;
   PowerDownResult result_;
   State state_ = State::done;
-  State back_to_ = State::done;  ///< After a node was woken up by NMT.
-  TimePoint since_{};            ///< When this state was entered.
+  State back_to_ = State::done;          ///< After a node was woken up by NMT.
+  TimePoint since_{};                    ///< When this state was entered.
+  std::optional<TimePoint> begun_;       ///< When the first word was asked for.
+  std::optional<TimePoint> stop_since_;  ///< When 02h was sent for the first time.
   TimePoint pause_ = TimePoint::min();
   drive::DriveState seen_ = drive::DriveState::unknown;
   bool has_seen_ = false;
   bool gently_ = false;  ///< Something was written that ends the motion.
   bool woken_ = false;
+  bool stopped_again_ = false;  ///< 02h was repeated, because nothing could be read.
   bool told_silence_ = false;
   int tries_ = 0;
-  int silences_ = 0;  ///< Answers in a row that did not come.
+  int silences_ = 0;  ///< Answers that did not come since something was read last.
   int means_ = 0;     ///< How many other means were tried.
   std::optional<double> first_speed_;
   std::optional<double> fastest_;

@@ -37,17 +37,7 @@ void PowerDown::on_look(const Result<Bytes>& answer, TimePoint now) {
   if (!drive::is_energised(state)) return enter(State::cut, now);
   if (state != DriveState::operation_enabled)
     return enter(brakes(state) ? State::cut : State::quick_stop, now);
-  enter(plan_.gentle->halt ? State::halt : State::read_mode, now);
-}
-
-void PowerDown::on_mode(const Result<Bytes>& answer, TimePoint now) {
-  const auto mode = answer ? static_cast<std::int8_t>(load_le(*answer)) : std::int8_t{0};
-  const auto& targets = plan_.gentle->targets;
-  const auto target =
-      std::find_if(targets.begin(), targets.end(), [&](const auto& one) { return one.first == mode; });
-  if (!answer || target == targets.end()) return enter(gently_ ? State::slowing : State::quick_stop, now);
-  tries_ = static_cast<int>(target - targets.begin());
-  enter(State::zero_target, now);
+  enter(plan_.gentle->halt ? State::halt : gently_ ? State::slowing : State::quick_stop, now);
 }
 
 void PowerDown::on_slowing(const Result<Bytes>& answer, TimePoint now) {
@@ -109,7 +99,8 @@ void PowerDown::on_stopping_speed(const Result<Bytes>& answer, TimePoint now) {
     result_.stopped = true;
     return after_stop(now);
   }
-  if (now >= since_ + (plan_.gentle ? kShortQuickStop : kQuickStopPatience)) return after_stop(now);
+  if (now >= stop_since_.value_or(since_) + (plan_.gentle ? kShortQuickStop : kQuickStopPatience))
+    return after_stop(now);
   poll_again(State::stopping, now);
 }
 

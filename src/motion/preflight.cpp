@@ -49,6 +49,11 @@ class Preflight {
     look_at_data();
     return std::move(items_);
   }
+  Result<std::vector<PreflightItem>> run_state() {
+    if (const auto done = look_at_state(); !done) return fail(done.error());
+    if (const auto done = look_at_inputs(); !done) return fail(done.error());
+    return std::move(items_);
+  }
 
  private:
   void add(Weight weight, std::string_view what, std::string text) {
@@ -121,23 +126,28 @@ class Preflight {
     items_.push_back({Weight::stop, "remote", std::move(text), std::move(hint)});
   }
 
+  Result<void> look_at_inputs() {
+    if (!units_->has(objects::kDigitalInputs)) return {};
+    const auto answer = session_->upload(node_, objects::kDigitalInputs);
+    if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
+    if (answer) add_inputs(static_cast<std::uint32_t>(load_le(*answer)));
+    return {};
+  }
+
   Result<void> look_at_objects() {
+    if (const auto done = look_at_inputs(); !done) return done;
     std::vector<session::SdoRequest> requests;
     std::vector<std::string_view> names;
-    const auto ask = [&](ObjectAddress object, std::string_view what) {
-      if (!units_->has(object)) return;
-      requests.push_back({.node = node_, .object = object});
-      names.push_back(what);
-    };
-    ask(objects::kDigitalInputs, "inputs");
-    for (const auto& shown : kShown) ask(shown.object, shown.what);
+    for (const auto& shown : kShown) {
+      if (!units_->has(shown.object)) continue;
+      requests.push_back({.node = node_, .object = shown.object});
+      names.push_back(shown.what);
+    }
     const auto answers = session_->transfer(requests);
     for (std::size_t i = 0; i < answers.size(); ++i) {
       if (!answers[i] && answers[i].error().code != Errc::sdo_abort) return fail(answers[i].error());
       if (!answers[i]) continue;
-      if (requests[i].object == objects::kDigitalInputs) {
-        add_inputs(static_cast<std::uint32_t>(load_le(*answers[i])));
-      } else if (const auto value = units_->physical(requests[i].object, *answers[i])) {
+      if (const auto value = units_->physical(requests[i].object, *answers[i])) {
         if (value->value != 0 || requests[i].object == objects::kFollowingErrorWindow ||
             requests[i].object == objects::kSupplyVoltage)
           add(Weight::note, names[i], fmt::format("{} {}", number_text(value->value), value->unit));
@@ -222,6 +232,31 @@ std::string_view name(PreflightItem::Weight weight) {
 Result<std::vector<PreflightItem>> preflight(session::Session& session, const MotionUnits& units,
                                              std::uint8_t node, bool chinese, PreflightRequest request) {
   return Preflight(session, units, node, chinese, std::move(request)).run();
+}
+
+Result<void> look_in_op(session::Session& session, const MotionUnits& units, std::uint8_t node, bool chinese,
+                        std::span<const PreflightItem> shown, const AskAgain& ask,
+                        const PreflightRequest& request) {
+  const auto items = Preflight(session, units, node, chinese, request).run_state();
+  if (!items) return fail(items.error());
+  if (const auto possible = check_preflight(*items, node); !possible) return possible;
+  std::vector<PreflightItem> unseen;
+  for (const auto& item : *items) {
+    const bool was_shown = std::any_of(shown.begin(), shown.end(), [&](const PreflightItem& one) {
+      return one.what == item.what && one.text == item.text;
+    });
+    if (item.weight == Weight::caution && !was_shown) unseen.push_back(item);
+  }
+  if (unseen.empty()) return {};
+  if (!ask)
+    return fail(drive_error(Errc::refused, node,
+                            fmt::format("in OP, {}: {}", unseen.front().what, unseen.front().text),
+                            "nothing was moved; outside OP the drive did not report this"));
+  if (const auto answer = ask(unseen); !answer) return answer;
+  // A person may have taken time to answer.
+  const auto again = Preflight(session, units, node, chinese, request).run_state();
+  if (!again) return fail(again.error());
+  return check_preflight(*again, node);
 }
 
 PreflightItem watchdog_item(const WatchdogPlan& watchdog) {

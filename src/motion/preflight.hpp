@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -36,6 +38,14 @@ struct PreflightRequest {
 /// Errc::timeout when it does not answer.
 Result<std::vector<PreflightItem>> preflight(session::Session& session, const MotionUnits& units,
                                              std::uint8_t node, bool chinese, PreflightRequest request = {});
+/// Asks about cautions that the preflight could not show. An error when the answer is no.
+using AskAgain = std::function<Result<void>(const std::vector<PreflightItem>& unseen)>;
+/// The whole state check once more, in OP and before the first controlword: outside OP some drives report
+/// neither fault nor remote nor limits. `shown` is what the preflight has shown; a caution that is not in it
+/// is asked about, and refused where nobody can be asked. Errc::refused for what lets nothing move.
+Result<void> look_in_op(session::Session& session, const MotionUnits& units, std::uint8_t node, bool chinese,
+                        std::span<const PreflightItem> shown, const AskAgain& ask,
+                        const PreflightRequest& request = {});
 /// The watchdog's line of it.
 PreflightItem watchdog_item(const WatchdogPlan& watchdog);
 

@@ -266,7 +266,7 @@ Result<ethercat::AlStatus> EtherCatNetwork::go_to(EtherCatNode& node, AlState st
   auto there = wire_.ask(request);
   if (there) {
     hear(node, *there, now(), true);
-    node.raised = node.raised && state != AlState::preop && state != AlState::init;
+    if (state == AlState::preop || state == AlState::init) set_raised(node, false);
     // What is driven later on is somebody else's again.
     if (state == AlState::preop || state == AlState::init) taken_over_[node.number] = false;
   } else if (there.error().code == Errc::negative) {

@@ -65,9 +65,9 @@ Result<void> EtherCatExchange::begin(AlState target) {
 }
 
 Result<void> EtherCatExchange::climb(AlState target) {
-  node_->raised = true;
+  network_->set_raised(*node_, true);
   if (const auto there = network_->go_to(*node_, AlState::preop); !there) return fail(there.error());
-  node_->raised = true;
+  network_->set_raised(*node_, true);
   const auto mapped = mapping();
   if (!mapped) return fail(mapped.error());
   const auto values = presets(mapped->outputs);
@@ -120,6 +120,7 @@ Result<bool> EtherCatExchange::knows_lrw() {
   fmmus_ = (*replies)[0].data[0];
   const auto features = ethercat::word_at((*replies)[1].data, 0);
   has_clock_ = (features & reg::kFeatureDc) != 0;
+  clock_bits_ = (features & reg::kFeatureDc64) != 0 ? 64 : 32;
   return (features & reg::kFeatureNoLrw) == 0;
 }
 
@@ -166,14 +167,16 @@ Result<void> EtherCatExchange::flow() {
       return fail(drive_error(Errc::timeout, node_->number,
                               "its cycles cannot be kept in step with its clock",
                               "is this machine too busy? A load beside servoctl delays its frames"));
-    break;
+    return fail(drive_error(Errc::timeout, node_->number,
+                            fmt::format("its process data are not complete: {}", cycle_trouble(counts)),
+                            network_->silence_hint(node_->number)));
   }
-  return fail(drive_error(Errc::timeout, node_->number, "it takes no process data: working counter too low",
+  return fail(drive_error(Errc::timeout, node_->number, "process data ended before they began",
                           network_->silence_hint(node_->number)));
 }
 
 Result<void> EtherCatExchange::start_clock(Duration cycle) {
-  auto& clock = node_->clock.emplace(node_->address(), cycle);
+  auto& clock = node_->clock.emplace(node_->address(), cycle, clock_bits_);
   const auto time = network_->wire_.exchange({clock.ask_time()});
   if (!time) return fail(time.error());
   if (!time->front().done()) return fail(network_->no_answer(node_->number));
@@ -194,7 +197,7 @@ Result<void> EtherCatExchange::end() {
   network_->end_cycles(*node_);
   const auto there = network_->go_to(*node_, AlState::preop);
   if (!there) return fail(there.error());
-  node_->raised = false;
+  network_->set_raised(*node_, false);
   if (clock)
     if (const auto off = write_all({clock->stop()}); !off) return off;
   return put_assignment_back();

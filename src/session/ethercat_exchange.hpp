@@ -52,6 +52,7 @@ class EtherCatExchange {
   EtherCatNode* node_;
   unsigned fmmus_ = 0;
   bool has_clock_ = false;
+  unsigned clock_bits_ = 64;
   bool synchronous_ = false;  ///< With SYNC0.
 };
 

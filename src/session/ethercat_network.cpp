@@ -62,6 +62,14 @@ EtherCatNetwork::~EtherCatNetwork() {
     if (node->raised) (void)end_exchange(node->number);
 }
 
+void EtherCatNetwork::set_raised(EtherCatNode& node, bool raised) {
+  if (node.raised == raised) return;
+  node.raised = raised;
+  const bool any = std::any_of(known_.begin(), known_.end(), [](const auto* one) { return one->raised; });
+  if (any && care_.is_held()) return;
+  care_ = any ? Protection::Hold(protection_, Care::unsettled) : Protection::Hold();
+}
+
 EtherCatNode& EtherCatNetwork::of(std::uint8_t node) {
   auto& place = nodes_[node & 0x7FU];
   if (!place) {

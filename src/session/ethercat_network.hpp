@@ -14,6 +14,7 @@
 #include "session/ethercat_node.hpp"
 #include "session/ethercat_wire.hpp"
 #include "session/network.hpp"
+#include "session/protection.hpp"
 
 namespace servoctl::session {
 
@@ -37,6 +38,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   int poll_fd() const override { return wire_.port().poll_fd(); }
   Result<void> recover(TimePoint deadline) override;
   void set_cancelled(std::function<bool()> cancelled) override { wire_.set_cancelled(std::move(cancelled)); }
+  void set_protection(Protection* protection) override { protection_ = protection; }
   std::unique_ptr<ObjectChannel> object_channel(std::uint8_t node, Duration timeout) override;
   const NodeRecords& records() const override { return records_; }
   std::optional<NodeEvent> take_event() override;
@@ -136,6 +138,8 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   };
 
   Result<bool> lacks_objects(std::uint8_t node);
+  /// A second signal must not end the program while it has a slave above PRE-OP.
+  void set_raised(EtherCatNode& node, bool raised);
 
   // EtherCatTenant
   void serve(ethercat::Ring& ring, TimePoint now) override;
@@ -189,7 +193,9 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   std::deque<NodeEvent> events_;
   std::vector<std::string> notices_;
   Records records_{*this};
-  EtherCatWire wire_;  ///< The last: its tenant is whole before it.
+  Protection* protection_ = nullptr;
+  Protection::Hold care_;  ///< While a slave is raised.
+  EtherCatWire wire_;      ///< The last: its tenant is whole before it.
 };
 
 }  // namespace servoctl::session

@@ -3,6 +3,19 @@
 #include <fmt/format.h>
 
 namespace servoctl::session {
+namespace {
+
+/// Cycles in succession without an exact working counter after which nothing more is waited for. Process data
+/// that do not flow end every wait for them within 40 ms, before the watchdog of a drive (100 ms) does.
+constexpr unsigned kMostMissing = 10;
+
+}  // namespace
+
+std::string cycle_trouble(const ethercat::ProcessImage::Counts& counts) {
+  if (counts.missing == 0) return "no cycle was made in time";
+  if (counts.expected == 0) return "frames do not come back";
+  return fmt::format("working counter {} instead of {}", counts.counter, counts.expected);
+}
 
 EtherCatObjectChannel::~EtherCatObjectChannel() {
   if (node_->owner == this) node_->owner = nullptr;
@@ -107,10 +120,11 @@ void EtherCatObjectChannel::serve_image(TimePoint now) {
     const auto input = image.fresh_input(node_->number, object_, now);
     if (input && input->time >= fetched_after_) return finish(input->value);
   }
-  if (now < until_) return;
+  const auto& counts = image.counts(node_->number);
+  if (now < until_ && counts.missing < kMostMissing) return;
+  const auto* what = way_ == Way::output ? "whether it was written is not known" : "its inputs did not come";
   finish(fail(drive_error(Errc::timeout, node_->number, object_,
-                          way_ == Way::output ? "the slave did not take the outputs: working counter too low"
-                                              : "the slave gave no inputs: working counter too low",
+                          fmt::format("{}: {}", what, cycle_trouble(counts)),
                           network_->silence_hint(node_->number))));
 }
 

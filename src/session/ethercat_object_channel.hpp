@@ -2,11 +2,15 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "session/ethercat_network.hpp"
 
 namespace servoctl::session {
+
+/// What is wrong with the last cycles of a slave: their working counter, or that they did not come back.
+std::string cycle_trouble(const ethercat::ProcessImage::Counts& counts);
 
 /// The way to the objects of one slave: its mailbox, or the process image for what that carries while process
 /// data flow. A write into the image has succeeded when the slave has taken a cycle with it; what is read

@@ -91,7 +91,7 @@ void EtherCatNetwork::on_missing(EtherCatNode& node, TimePoint now) {
   const bool was_driven = node.exchanges();
   end_cycles(node);
   forget_mailbox(node, why);
-  node.raised = false;
+  set_raised(node, false);
   node.kept = false;
   if (all_there) {
     ++node.boots;
@@ -100,7 +100,7 @@ void EtherCatNetwork::on_missing(EtherCatNode& node, TimePoint now) {
     return tell(node.number, NodeEvent::BootUp{}, now);
   }
   node.gone = true;
-  node.raised = was_driven;
+  set_raised(node, was_driven);
   tell(node.number, NodeEvent::Gone{now - node.heard_at, NodeEvent::Gone::Sign::counter}, now);
 }
 

@@ -64,7 +64,8 @@ Result<std::vector<EtherCatWire::Reply>> EtherCatWire::exchange(
     for (std::size_t i = 0; i < posted; ++i) {
       const auto answer = tickets[i] ? ring_.take_answer(*tickets[i]) : std::nullopt;
       if (!answer) continue;
-      replies[i] = {Bytes(answer->data.begin(), answer->data.end()), answer->working_counter, answer->lost};
+      replies[i] = {Bytes(answer->data.begin(), answer->data.end()), answer->working_counter, answer->lost,
+                    answer->done()};
       tickets[i].reset();
       --open;
     }

@@ -32,7 +32,8 @@ class EtherCatWire {
     Bytes data;
     std::uint16_t working_counter = 0;
     bool lost = false;
-    bool done() const { return !lost && working_counter != 0; }
+    bool is_done = false;
+    bool done() const { return is_done; }
   };
 
   /// `tenant` outlives it.

@@ -27,6 +27,7 @@ class CanNetwork;
 class EtherCatNetwork;
 class GatewayNetwork;
 class ModbusNetwork;
+class Protection;
 
 /// The way to the objects of one node: one transfer at a time, whatever carries it. Lives no longer than its
 /// network, which serves it in every step: what the node answers is noted there.
@@ -147,6 +148,9 @@ class Network {
 
   /// Asked in waits that are the network's own: when it answers true they end with Errc::interrupted.
   virtual void set_cancelled(std::function<bool()>) {}
+  /// Held (Care::unsettled) while a node is in a state that ends with this program only. May be null;
+  /// outlives the network.
+  virtual void set_protection(Protection*) {}
 
   virtual std::unique_ptr<ObjectChannel> object_channel(std::uint8_t node, Duration timeout) = 0;
 

@@ -46,6 +46,7 @@ class Protection {
     }
     ~Hold() { release(); }
 
+    bool is_held() const { return protection_ != nullptr; }
     void release() {
       if (auto* const held = std::exchange(protection_, nullptr)) held->remove(care_);
     }

@@ -27,6 +27,7 @@ Session::Session(std::unique_ptr<Network> network, std::string url, Options opti
       options_(std::move(options)),
       energised_(options_.protection) {
   network_->set_cancelled([this] { return options_.cancelled && options_.cancelled(); });
+  network_->set_protection(options_.protection);
   if (options_.ordered)
     network_->set_ordered(
         [this](std::uint8_t node, std::string_view order) { options_.ordered(*this, node, order); });
@@ -61,6 +62,10 @@ Result<bool> Session::step(TimePoint deadline, const std::function<bool()>& conc
   if (options_.cancelled) {
     // A signal that comes after this question ends the wait below at once: see wait_or_signal().
     if (options_.cancelled()) return fail(Errc::interrupted, "interrupted");
+  }
+  if (options_.until != kNever) {
+    if (now() >= options_.until) return fail(Errc::interrupted, "the time is over");
+    deadline = std::min(deadline, options_.until);
   }
   // What does not wait keeps nobody from going on.
   if (interleave_ != nullptr && interleave_->in_job() && deadline > received_at_)

@@ -44,6 +44,12 @@ struct Options {
   Duration timeout = std::chrono::milliseconds(500);  ///< Longest wait for one SDO answer.
   std::uint32_t retries = 1;        ///< Further tries of a read that was not answered; never of a write.
   std::function<bool()> cancelled;  ///< Asked in every wait; may be empty.
+  /// Every wait ends then (Errc::interrupted), and no request begins from then on; one that is under way has
+  /// 20 ms more. So what ends at a time does not wait for an answer first.
+  TimePoint until = kNever;
+  /// How many signals have come that end what goes on: exit paths, which are not cancelled, go on faster
+  /// after each. May be empty.
+  std::function<unsigned()> signals;
   /// Told, a line at a time, what a way out does while the bus is lost; may be empty.
   std::function<void(std::string_view line)> tell;
   /// Asked in every wait: serves the other networks of this process that cannot wait, and answers how long

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "session/option_scope.hpp"
+
 namespace servoctl::session {
 namespace {
 
@@ -11,6 +13,8 @@ constexpr int kNone = -1;
 constexpr std::size_t kLongTransfer = 1000;
 /// Requests one after the other from which on a list is; a scan asks 127 nodes at once.
 constexpr std::size_t kLongList = 40;
+/// For an answer that is on its way when the time is over (Options::until).
+constexpr Duration kGrace = std::chrono::milliseconds(20);
 
 }  // namespace
 
@@ -18,7 +22,8 @@ TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
     : session_(&session),
       requests_(requests),
       results_(requests.size(), Result<Bytes>(Bytes{})),
-      open_(requests.size()) {
+      open_(requests.size()),
+      until_(session.options().until) {
   channel_of_node_.fill(kNone);
   for (std::size_t i = 0; i < requests.size(); ++i) {
     const auto node = requests[i].node & 0x7FU;
@@ -36,6 +41,7 @@ TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
 }
 
 std::vector<Result<Bytes>> TransferRun::run() {
+  const OptionScope grace(*session_, &Options::until, until_ == kNever ? kNever : until_ + kGrace);
   for (auto& channel : channels_) start(channel);
   const std::function<bool()> stirred = [this] {
     return std::any_of(channels_.begin(), channels_.end(),
@@ -96,6 +102,12 @@ bool TransferRun::advance(Lane& channel) {
 
 void TransferRun::start(Lane& channel) {
   if (channel.started == channel.requests.size()) return;
+  if (until_ != kNever && session_->now() >= until_) {
+    open_ -= channel.requests.size() - channel.started;
+    for (; channel.started < channel.requests.size(); ++channel.started)
+      results_[channel.requests[channel.started]] = fail(Errc::interrupted, "the time is over");
+    return;
+  }
   channel.current = channel.requests[channel.started++];
   channel.tries = 0;
   ask(channel, requests_[channel.current].transfer);

@@ -46,6 +46,7 @@ class TransferRun {
   std::array<int, 128> channel_of_node_{};
   std::vector<Result<Bytes>> results_;
   std::size_t open_ = 0;
+  TimePoint until_;          ///< No request begins from then on.
   std::size_t in_turn_ = 0;  ///< How many at most go one after the other.
 };
 

@@ -32,6 +32,7 @@ struct Misbehaviour {
   bool ignores_disable = false;                  ///< Takes 00h, 02h and 07h, and stays energised.
   bool stays_switched_on = false;                ///< Takes 00h, and goes no lower than "switched on".
   std::optional<std::uint16_t> statusword = {};  ///< What it says, whatever state it is in.
+  std::optional<std::int8_t> mode = {};          ///< What 6061h says, whatever mode it is in.
 };
 
 /// An error by its code (603Fh) and the bytes that its maker adds.

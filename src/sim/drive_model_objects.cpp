@@ -20,6 +20,10 @@ std::uint32_t DriveModel::read(ObjectAddress object, Bytes& out) {
     out = store_le(*misbehaviour_.statusword, 2);
     return 0;
   }
+  if (object == objects::kModeDisplay && misbehaviour_.mode) {
+    out = store_le(static_cast<std::uint64_t>(*misbehaviour_.mode), 1);
+    return 0;
+  }
   if (object == objects::kStatusword) {
     const auto word = power_.statusword(static_cast<std::int8_t>(values_.number(objects::kModeDisplay)));
     out = store_le(static_cast<std::uint16_t>(word | axis_.bits(is_enabled())), 2);

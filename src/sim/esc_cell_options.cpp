@@ -32,6 +32,29 @@ Result<void> late_answers(const Task& task) {
   return {};
 }
 
+Result<void> lie(const Task& task) {
+  const auto words = lies_of(*task.spec, *task.option, kRingLies);
+  if (!words) return fail(words.error());
+  EscLies lies;
+  // Those of kRingLies: the text of the option goes.
+  for (const auto word : *words) lies.words.push_back(*std::find(kRingLies.begin(), kRingLies.end(), word));
+  for (const auto& option : task.spec->options) {
+    if (option.key != "lie-after" && option.key != "lie-for") continue;
+    const auto time = time_of(*task.spec, option);
+    if (!time) return fail(time.error());
+    if (option.key == "lie-after") lies.after = *time;
+    if (option.key == "lie-for") lies.length = *time;
+  }
+  for (const auto& slave : task.cell->slaves) slave->plan_lies(lies);
+  return {};
+}
+
+Result<void> set_clock(const Task& task) {
+  if (task.option->value != "32") return task.wrong("distributed clocks of 32 bits are clock=32");
+  for (const auto& slave : task.cell->slaves) slave->registers().set_clock_bits(32);
+  return {};
+}
+
 Result<void> fall_silent(const Task& task) {
   const auto time = time_of(*task.spec, *task.option);
   if (!time) return fail(time.error());
@@ -142,7 +165,7 @@ struct Way {
   Result<void> (*apply)(const Task&);  ///< Null: somebody else has applied it.
 };
 
-constexpr std::array<Way, 15> kWays{{{"state", nullptr},
+constexpr std::array<Way, 19> kWays{{{"state", nullptr},
                                      {"fault", nullptr},
                                      {"counts", nullptr},
                                      {"panel", nullptr},
@@ -155,6 +178,10 @@ constexpr std::array<Way, 15> kWays{{{"state", nullptr},
                                      {"emergency", send_emergencies},
                                      {"fall", plan_fall},
                                      {"free-run", refuse_free_run},
+                                     {"clock", set_clock},
+                                     {"lie", lie},
+                                     {"lie-after", nullptr},
+                                     {"lie-for", nullptr},
                                      {"power", cycle_power},
                                      {"cut", cut_cable}}};
 

@@ -22,6 +22,10 @@ Result<SiiFault> sii_fault_of(const CellSpec& spec);
 ///   emergency=N      before each of N answers an emergency comes
 ///   fall=TIME, fall=CODE@TIME      out of OP to SAFE-OP, with this AL status code (1Ah)
 ///   free-run=no      OP only with SYNC0
+///   clock=32         distributed clocks of 32 bits
+///   lie=WORD,WORD    deviations (kRingLies) that begin when the drive was enabled; lie-after=TIME: so long
+///   after
+///                    that; lie-for=TIME: and end after so long
 ///   power=POSITION@OFF-ON, cut=POSITION@FROM-TO   a slave without power, or the cable in front of it cut;
 ///                    without the second time it stays so
 /// Errc::usage for an unknown key, or a value that is none.

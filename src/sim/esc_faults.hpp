@@ -19,7 +19,13 @@ struct EscFaults {
   bool refuses_free_run = false;       ///< OP only with SYNC0 (AL status 0027h).
   bool refuses_mapped_writes = false;  ///< In OP it takes no SDO of what its outputs carry (0601 0006h).
   bool sleeps_outside_op = false;      ///< Its drive state machine runs in OP only: 6041h reads 0 elsewhere.
-  Duration state_delay{};              ///< From the request of a state to what comes of it.
+  bool silent_mailbox = false;         ///< Requests are taken, and neither carried out nor answered.
+  bool withholds_inputs = false;   ///< Outputs are taken, inputs are not returned: the counter is 2, not 3.
+  bool senseless_counter = false;  ///< The working counter of process data is FFFFh.
+  bool frozen_inputs = false;      ///< Inputs stay as they were.
+  bool frozen_outputs = false;     ///< Outputs are counted and not carried out.
+  bool frozen_state = false;       ///< 0130h stays as it was, whatever state the slave goes to.
+  Duration state_delay{};          ///< From the request of a state to what comes of it.
 };
 
 /// It leaves a state by itself.

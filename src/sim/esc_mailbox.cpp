@@ -62,6 +62,7 @@ void EscMailbox::on_repeat() {
 }
 
 void EscMailbox::on_message(ByteSpan message, TimePoint now) {
+  if (faults_->silent_mailbox) return;
   if (message.size() < kMailboxHeader) return;
   const auto length = load_le(message.first(2));
   const unsigned channel = message[4] & 0x3FU;

@@ -51,7 +51,6 @@ constexpr bool is_of_sii(std::uint32_t address) { return is_between(address, reg
 EscRegisters::EscRegisters() { power_on({}); }
 
 void EscRegisters::power_on(TimePoint now) {
-  constexpr std::uint16_t kClock64 = 1U << 3U;
   constexpr std::uint8_t kTwoPlugs = 0x0F;
   memory_.clear();
   memory_[reg::kType] = 0x11;
@@ -60,7 +59,7 @@ void EscRegisters::power_on(TimePoint now) {
   memory_[reg::kSyncManagers] = kSyncManagers;
   memory_[reg::kRamSize] = kRamKiB;
   memory_[reg::kPorts] = kTwoPlugs;
-  memory_.set(reg::kFeatures, reg::kFeatureDc | kClock64, 2);
+  show_features();
   memory_[reg::kDlControl] = reg::kDlControlForward;
   memory_.set(reg::kWatchdogDivider, reg::kDefaultWatchdogDivider, 2);
   memory_.set(reg::kPdiWatchdog, reg::kDefaultSmWatchdog, 2);
@@ -74,6 +73,16 @@ void EscRegisters::power_on(TimePoint now) {
   const auto links = std::exchange(links_, {});
   for (unsigned port = 0; port < kPorts; ++port) set_link(port, links[port]);
   begin_frame(now);
+}
+
+void EscRegisters::set_clock_bits(unsigned bits) {
+  clock_.set_bits(bits);
+  show_features();
+}
+
+void EscRegisters::show_features() {
+  constexpr unsigned kWide = 64;
+  memory_.set(reg::kFeatures, reg::kFeatureDc | (clock_.bits() == kWide ? reg::kFeatureDc64 : 0U), 2);
 }
 
 void EscRegisters::on_time(TimePoint now) {

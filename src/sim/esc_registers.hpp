@@ -60,6 +60,9 @@ class EscRegisters {
   bool has_sync0() const { return clock_.is_running(memory_); }
   bool is_sync0_set_up() const { return EscClock::is_set_up(memory_); }
 
+  /// Of its distributed clock: 64, or 32 (0008h bit 3).
+  void set_clock_bits(unsigned bits);
+
   // The wire.
   const EscMemory& memory() const { return memory_; }
   EscSii& sii() { return sii_; }
@@ -86,6 +89,7 @@ class EscRegisters {
   bool write_manager(std::uint16_t address, std::uint8_t value);
   void clear_counters(std::uint16_t address);
   void count(std::uint16_t address);
+  void show_features();
 
   EscMemory memory_;
   std::array<EscSyncManager, kSyncManagers> managers_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -54,7 +55,9 @@ void EscSlave::power_on(TimePoint now) {
 
 bool EscSlave::on_frame(std::span<std::uint8_t> frame, TimePoint now) {
   on_time(now);
+  const Bytes before(frame.begin(), frame.end());
   if (!controller_.process(frame, now)) return false;
+  falsify_process_data(frame, before, faults_);
   work(now);
   return true;
 }
@@ -72,7 +75,34 @@ void EscSlave::on_time(TimePoint now) {
     const auto fall = std::exchange(fall_, {});
     states_.fall_to(fall.to, fall.code);
   }
+  lie(now);
   work(now);
+}
+
+void EscSlave::lie(TimePoint now) {
+  if (lies_.words.empty()) return;
+  if (!enabled_at_ && model_.power_state() == drive::DriveState::operation_enabled) enabled_at_ = now;
+  if (!enabled_at_ || now < *enabled_at_ + lies_.after) return;
+  if (!honest_) begin_to_lie();
+  if (lies_.length && now >= *enabled_at_ + lies_.after + *lies_.length) end_lies();
+}
+
+void EscSlave::begin_to_lie() {
+  honest_ = faults_;
+  for (const auto word : lies_.words) {
+    add_lie(faults_, word);
+    Bytes shown;
+    if (word == "statusword" && model_.read(objects::kStatusword, shown) == 0)
+      model_.misbehaviour().statusword = static_cast<std::uint16_t>(load_le(shown));
+    if (word == "mode") model_.misbehaviour().mode = std::int8_t{0};
+  }
+}
+
+void EscSlave::end_lies() {
+  lies_.words.clear();
+  faults_ = *honest_;
+  model_.misbehaviour().statusword.reset();
+  model_.misbehaviour().mode.reset();
 }
 
 TimePoint EscSlave::deadline() const {
@@ -97,12 +127,18 @@ void EscSlave::work(TimePoint now) {
   while (const auto emergency = model_.take_emergency()) mailbox_.push(EscCoe::emergency(*emergency), now);
   mailbox_.on_time(now);
   sample_inputs(now);
-  registers().set_al_status(states_.status(), states_.code());
+  show_state();
+}
+
+void EscSlave::show_state() {
+  if (!faults_.frozen_state) registers().set_al_status(states_.status(), states_.code());
 }
 
 void EscSlave::apply_outputs() {
+  const auto outputs = registers().sync_manager(EscRegisters::kOutputs).take();
+  if (faults_.frozen_outputs) return;
   applies_ = true;
-  process_data_.apply(registers().sync_manager(EscRegisters::kOutputs).take());
+  process_data_.apply(outputs);
   applies_ = false;
   sampled_at_.reset();  // What they bring about is seen at once.
 }
@@ -112,6 +148,7 @@ void EscSlave::sample_inputs(TimePoint now) {
   if (state() < EscState::safe_op) return sampled_at_.reset();
   if (sampled_at_ && now - *sampled_at_ < kSampling) return;
   sampled_at_ = now;
+  if (faults_.frozen_inputs) return;
   registers().sync_manager(EscRegisters::kInputs).put(process_data_.sample());
 }
 

@@ -4,12 +4,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "base/time.hpp"
 #include "sim/drive_model.hpp"
 #include "sim/esc_coe.hpp"
 #include "sim/esc_controller.hpp"
 #include "sim/esc_faults.hpp"
+#include "sim/esc_lies.hpp"
 #include "sim/esc_mailbox.hpp"
 #include "sim/esc_process_data.hpp"
 #include "sim/esc_sii_image.hpp"
@@ -52,6 +54,8 @@ class EscSlave final : private DrivePort, private EscApplication {
   DriveModel& model() { return model_; }
   const DriveModel& model() const { return model_; }
   EscFaults& faults() { return faults_; }
+  /// How it will lie once its drive was enabled.
+  void plan_lies(EscLies lies) { lies_ = std::move(lies); }
   /// It leaves its state at this time; only once.
   void plan_fall(PlannedFall fall) { fall_ = fall; }
   EscState state() const { return states_.state(); }
@@ -78,6 +82,10 @@ class EscSlave final : private DrivePort, private EscApplication {
 
   bool lies_free(unsigned number) const;
   void work(TimePoint now);
+  void lie(TimePoint now);
+  void begin_to_lie();
+  void end_lies();
+  void show_state();
   void apply_outputs();
   void sample_inputs(TimePoint now);
   void leave_op(bool by_watchdog);
@@ -98,6 +106,9 @@ class EscSlave final : private DrivePort, private EscApplication {
   std::optional<TimePoint> sampled_at_;
   std::optional<Request> request_;
   PlannedFall fall_;
+  EscLies lies_;
+  std::optional<EscFaults> honest_;      ///< Its faults before it began to lie.
+  std::optional<TimePoint> enabled_at_;  ///< When its drive was enabled for the first time.
 };
 
 }  // namespace servoctl::sim

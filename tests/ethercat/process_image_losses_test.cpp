@@ -1,3 +1,5 @@
+#include <initializer_list>
+
 #include "process_image_fixture.hpp"
 
 namespace servoctl::ethercat {
@@ -24,6 +26,30 @@ TEST_F(ProcessImageTest, ACounterSaysWhichHalfIsMissing) {
   EXPECT_EQ(image.counts(1).missing, 0U);
   EXPECT_EQ(image.counts(2).missing, 3U);
   EXPECT_EQ(image.counts(1).cycles, 4U);
+}
+
+/// Bits of it are no proof: FFFFh has those of both halves.
+TEST_F(ProcessImageTest, ACounterThatIsNotTheExpectedOneIsWrong) {
+  preset();
+  ASSERT_TRUE(image.start(now));
+  cycle();
+  const auto old = image.input(1, kStatus)->time;
+  unsigned missing = 0;
+  for (const auto counter : std::initializer_list<std::uint16_t>{0, 1, 2, 4, 6, 7, 0xFFFF}) {
+    says = counter;
+    const auto written = image.set(1, kControl, hex("0700"));
+    ASSERT_TRUE(written);
+    cycle();
+    EXPECT_FALSE(image.is_written(1, *written)) << counter;
+    EXPECT_EQ(image.input(1, kStatus)->time, old) << counter;
+    EXPECT_EQ(image.counts(1).missing, ++missing) << counter;
+    EXPECT_EQ(image.counts(1).counter, counter);
+    EXPECT_EQ(image.counts(1).expected, 3U);
+  }
+  says.reset();
+  cycle();
+  EXPECT_EQ(image.counts(1).missing, 0U);
+  EXPECT_GT(image.input(1, kStatus)->time, old);
 }
 
 TEST_F(ProcessImageTest, ASlaveThatIsGoneDoesNotTouchTheOthers) {

@@ -21,7 +21,12 @@ class SyncClockTest : public testing::Test {
   }
   std::uint64_t slave_time() const {
     const auto ns = std::chrono::duration_cast<std::chrono::nanoseconds>(now_.time_since_epoch()).count();
-    return static_cast<std::uint64_t>(static_cast<double>(ns) * speed_) + 777'000;
+    const auto time = static_cast<std::uint64_t>(static_cast<double>(ns) * speed_) + 777'000;
+    return bits_ == 64 ? time : static_cast<std::uint32_t>(time);
+  }
+  void use_clock_of(unsigned bits) {
+    bits_ = bits;
+    clock_ = SyncClock(kClockSlave, 4ms, bits);
   }
   void run(Duration time) {
     for (const auto end = now_ + time; now_ < end;) {
@@ -42,7 +47,8 @@ class SyncClockTest : public testing::Test {
       const bool more = (frame[at + 7] & 0x80U) != 0;
       const bool time = frame[at] == static_cast<std::uint8_t>(Command::fprd);
       if (time) {
-        const auto bytes = store_le(slave_time(), 8);
+        const auto bytes = store_le(slave_time(), bits_ / 8);
+        EXPECT_EQ(length, bits_ / 8);
         std::copy(bytes.begin(), bytes.end(), frame.begin() + static_cast<std::ptrdiff_t>(at + 10));
       }
       frame[at + 10 + length] = time ? 1 : 3;
@@ -57,6 +63,7 @@ class SyncClockTest : public testing::Test {
 
   TimePoint now_{1s};
   double speed_ = 1;
+  unsigned bits_ = 64;
   unsigned seed_ = 1;
   Ring ring_{Ring::Options{}};
   ProcessImage image_{ProcessImage::Options{}};
@@ -92,6 +99,31 @@ TEST_F(SyncClockTest, CyclesComeIntoTheMiddleAndStayThereThoughTheClocksDrift) {
     image_.leave(ring_);
     clock_.leave(ring_);
   }
+}
+
+/// 2^32 ns are no whole number of cycles.
+TEST_F(SyncClockTest, AClockOf32BitsIsCountedOnOverItsWraps) {
+  use_clock_of(32);
+  const auto writes = clock_.start(slave_time());
+  EXPECT_EQ(writes[2].data.size(), 4U) << "0990h has 32 bits as well";
+  ASSERT_TRUE(image_.start(now_));
+  run(400ms);
+  ASSERT_TRUE(clock_.is_locked());
+  Duration farthest{};
+  for (int i = 0; i < 5000; ++i) {  // 20 s: more than four wraps.
+    run(4ms);
+    farthest = std::max(farthest, clock_.distance());
+  }
+  EXPECT_LT(farthest, 300us);
+  EXPECT_TRUE(clock_.is_locked());
+}
+
+TEST_F(SyncClockTest, AFirstPulseBehindAWrapIsStillToCome) {
+  use_clock_of(32);
+  const auto writes = clock_.start(0xFFFF'FF00);
+  EXPECT_EQ(load_le(writes[2].data),
+            (0xFFFF'FF00ULL + 104'000'000ULL) / 4'000'000ULL * 4'000'000ULL % (1ULL << 32U))
+      << "a tenth of a second ahead, rounded up to whole cycles, in 32 bits";
 }
 
 TEST_F(SyncClockTest, OnlyCodesOfSynchronisationDemandIt) {

@@ -1,6 +1,9 @@
 // Motions of drives on a ring: in OP, by the process image, and back to PRE-OP without power.
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <vector>
+
 #include "drive/standard_objects.hpp"
 #include "ethercat_motion.hpp"
 #include "motion/power.hpp"
@@ -43,6 +46,64 @@ TEST_F(EtherCatMotion, ADriveThatRunsItsStateMachineInOpOnlyIsLookedAtAgainThere
   const auto done = run(jog_for("60rpm", 1s), plan_jog, run_jog);
   EXPECT_TRUE(done.outcome) << done.outcome.error().message;
   expect_safe();
+}
+
+/// A drive that tells nothing outside OP; what it tells there comes before the first controlword.
+class AsleepOutsideOp : public EtherCatMotion {
+ protected:
+  void SetUp() override {
+    EtherCatMotion::SetUp();
+    slave().faults().sleeps_outside_op = true;
+  }
+  MotionReport looked_at_jog() {
+    Motion motion(*session_, profile(), 1, options_);
+    EXPECT_TRUE(motion.prepare());
+    EXPECT_TRUE(motion.look(false));
+    const auto kind = jog_for("60rpm", 1s);
+    const auto plan = plan_jog(motion, kind);
+    EXPECT_TRUE(plan);
+    if (before_op) before_op();
+    on_sent_ = [this] {
+      was_commanded = was_commanded || slave().model().values().number(objects::kControlword) != 0;
+    };
+    return run_jog(motion, kind, *plan);
+  }
+  void expect_refused(const MotionReport& done, std::string_view why) {
+    ASSERT_FALSE(done.outcome);
+    EXPECT_EQ(done.outcome.error().code, Errc::refused);
+    EXPECT_NE(done.outcome.error().message.find(why), std::string::npos) << done.outcome.error().message;
+    EXPECT_FALSE(was_commanded);
+    EXPECT_TRUE(done.samples.empty());
+    expect_safe();
+    EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+  }
+
+  std::function<void()> before_op;
+  bool was_commanded = false;
+};
+
+TEST_F(AsleepOutsideOp, OneThatObeysItsPanelIsRefusedInOp) {
+  slave().model().misbehaviour().statusword = 0x0050;  // Switch on disabled, bit 9 (remote) is 0.
+  expect_refused(looked_at_jog(), "bit 9 (remote) is 0");
+}
+
+TEST_F(AsleepOutsideOp, OneInFaultIsRefusedInOp) {
+  slave().model().misbehaviour().statusword = 0x0218;
+  expect_refused(looked_at_jog(), "fault");
+}
+
+TEST_F(AsleepOutsideOp, ACautionThatShowsInOpOnlyIsAskedAbout) {
+  before_op = [this] { slave().model().misbehaviour().statusword = 0x0A50; };  // Bit 11: internal limit.
+  expect_refused(looked_at_jog(), "bit 11");
+  std::vector<PreflightItem> asked;
+  options_.ask_again = [&](const std::vector<PreflightItem>& unseen) -> Result<void> {
+    asked = unseen;
+    return fail(Errc::refused, "not confirmed");
+  };
+  slave().model().misbehaviour().statusword.reset();
+  expect_refused(looked_at_jog(), "not confirmed");
+  ASSERT_EQ(asked.size(), 1U);
+  EXPECT_EQ(asked.front().what, "limit");
 }
 
 TEST_F(EtherCatMotion, TheWatchdogIsThatOfTheSyncManager) {

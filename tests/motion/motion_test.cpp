@@ -53,6 +53,32 @@ class MotionOfFamily : public testing::TestWithParam<Family> {
   MotionBench bench;
 };
 
+/// The end of a timed motion is by time: nothing is read before the drive is told to stop, and no answer is
+/// waited for past that time.
+TEST_P(MotionOfFamily, ATimedMotionEndsInTimeThoughReadsAreNotAnswered) {
+  for (const auto silent_after : {1500ms, 1950ms, 3000ms}) {
+    MotionBench own(GetParam().name, GetParam().turn);
+    std::optional<TimePoint> told;
+    std::optional<TimePoint> stopped;
+    own.started = [&] {
+      own.bus->swallows = [&](const std::string& frame) {
+        if (frame.substr(0, 4) != "601#") return false;
+        if (frame.substr(4, 2) == "40")
+          return told && own.session->now() - *told >= (frame.substr(6, 4) == "FF60" ? 0ms : silent_after);
+        if (frame.substr(6, 2) != "FF" || frame.substr(8, 2) != "60") return false;
+        const bool zero = load_le(own.drive().value(objects::kTargetVelocity)) == 0;
+        if (!told && frame.substr(12) != "00000000") told = own.session->now();
+        if (told && !zero && frame.substr(12) == "00000000" && !stopped) stopped = own.session->now();
+        return false;
+      };
+    };
+    (void)own.jog(jog_for("60rpm", 2s));
+    ASSERT_TRUE(told && stopped);
+    EXPECT_LE(*stopped - *told, 2s + 50ms);
+    EXPECT_FALSE(own.energised());
+  }
+}
+
 TEST_P(MotionOfFamily, JogTurnsForATimeAndLeavesNothingBehind) {
   const auto done = bench.jog(jog_for("60rpm", 1s));
   ASSERT_TRUE(done.outcome) << done.outcome.error().message;

@@ -130,6 +130,48 @@ TEST_F(EtherCatTest, TheEndOfASessionTakesItsSlavesOutOfOp) {
   EXPECT_EQ(slave().state(), sim::EscState::pre_op);
 }
 
+/// A second signal ends a program that nothing protects, and would leave the slave in OP.
+TEST_F(EtherCatTest, SignalsAreHeldBackUntilASlaveIsOutOfOp) {
+  std::vector<std::pair<Care, sim::EscState>> told;
+  Protection protection([&](Care worst) { told.emplace_back(worst, slave().state()); });
+  session_options_.protection = &protection;
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  pass(milliseconds(100));
+  EXPECT_EQ(protection.worst(), Care::unsettled);
+  session_.reset();
+  const std::vector<std::pair<Care, sim::EscState>> expected{{Care::unsettled, sim::EscState::pre_op},
+                                                             {Care::none, sim::EscState::pre_op}};
+  EXPECT_EQ(told, expected);
+}
+
+TEST_F(EtherCatTest, ADriveWithAClockOf32BitsIsRunWithSync0) {
+  open("sv2@1?free-run=no&clock=32");
+  network().learn(1, rules());
+  // The first pulse lies behind the wrap of its clock.
+  ASSERT_TRUE(session_->upload(1, objects::kVendorId));
+  ASSERT_TRUE(slave().registers().write(0x0920, store_le(0xFFFF'FFFFU, 8)));
+  const auto up = network().request_state(1, NodeState::operational);
+  ASSERT_TRUE(up) << up.error().message;
+  pass(std::chrono::seconds(10));
+  EXPECT_EQ(slave().state(), sim::EscState::op);
+}
+
+TEST_F(EtherCatTest, AWrongWorkingCounterIsNamed) {
+  open("sv2@1");
+  network().learn(1, rules());
+  ASSERT_TRUE(network().request_state(1, NodeState::operational));
+  slave().faults().withholds_inputs = true;
+  const auto begun = session_->now();
+  const auto read = session_->upload(1, objects::kStatusword);
+  ASSERT_FALSE(read);
+  EXPECT_NE(read.error().message.find("working counter 2 instead of 3"), std::string::npos)
+      << read.error().message;
+  EXPECT_LT(session_->now() - begun, milliseconds(100)) << "nothing more is to be expected";
+  EXPECT_FALSE(session_->download(1, objects::kTargetVelocity, store_le(0U, 4)));
+}
+
 TEST_F(EtherCatTest, OutputsArePresetFromTheDriveBeforeOp) {
   open("sv2@1");
   network().learn(1, rules());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,15 +20,22 @@ namespace test {
 /// A second master on a wire that outlives it.
 class BorrowedPort final : public ethernet::Port {
  public:
-  explicit BorrowedPort(ethernet::Port& port) : port_(&port) {}
+  /// `on_sent` is called behind every frame; outlives it.
+  explicit BorrowedPort(ethernet::Port& port, const std::function<void()>& on_sent)
+      : port_(&port), on_sent_(&on_sent) {}
   TimePoint now() const override { return port_->now(); }
-  Result<void> send(ByteSpan frame) override { return port_->send(frame); }
+  Result<void> send(ByteSpan frame) override {
+    auto sent = port_->send(frame);
+    if (*on_sent_) (*on_sent_)();
+    return sent;
+  }
   Result<std::optional<ByteSpan>> receive(TimePoint deadline) override { return port_->receive(deadline); }
   TimePoint next_event() const override { return port_->next_event(); }
   Result<void> recover(TimePoint deadline) override { return port_->recover(deadline); }
 
  private:
   ethernet::Port* port_;
+  const std::function<void()>* on_sent_;
 };
 
 }  // namespace test
@@ -46,8 +54,8 @@ class EtherCatTest : public testing::Test {
   /// One more program on the same wire; they must not wait at the same time.
   std::unique_ptr<Session> connect() {
     return std::make_unique<Session>(
-        std::make_unique<EtherCatNetwork>(std::make_unique<test::BorrowedPort>(*port_), "coe:sim"), "coe:sim",
-        Options{});
+        std::make_unique<EtherCatNetwork>(std::make_unique<test::BorrowedPort>(*port_, on_sent_), "coe:sim"),
+        "coe:sim", session_options_);
   }
   EtherCatNetwork& network() { return *session_->network().ethercat(); }
   sim::EscRing& ring() { return port_->cell().ring; }
@@ -57,6 +65,8 @@ class EtherCatTest : public testing::Test {
     ASSERT_TRUE(session_->wait([] { return false; }, session_->now() + time));
   }
 
+  Options session_options_;
+  std::function<void()> on_sent_;  ///< Called when the slaves have had a frame.
   std::unique_ptr<sim::SimPort> port_;
   std::unique_ptr<Session> session_;
 };

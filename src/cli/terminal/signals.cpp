@@ -33,6 +33,7 @@ int g_terminal = -1;
 termios g_mode{};
 std::string_view g_last_words;
 std::atomic<unsigned> g_resumed{0};
+std::atomic<unsigned> g_signalled{0};
 
 /// tcsetattr(), tcgetpgrp(), poll() and write() may be called by a handler. From the background it would stop
 /// the process (SIGTTOU), and the terminal is another's. One that is held takes nothing.
@@ -61,6 +62,7 @@ extern "C" void on_signal(int signal) {
   }
   const int error = errno;
   g_interrupted = 1;
+  g_signalled.fetch_add(1);
   if (signal != SIGINT && signal != SIGTSTP) g_terminated = 1;
   note_signal();
   nudge(true);
@@ -209,6 +211,7 @@ void protect_from_signals(bool energised) {
   sigaction(SIGTTOU, &output, nullptr);
 }
 
+unsigned times_signalled() { return g_signalled.load(); }
 bool interrupted() { return g_interrupted != 0; }
 bool terminated() { return g_terminated != 0; }
 

@@ -23,6 +23,8 @@ bool interrupted();
 /// Whether another than Ctrl-C came: the program has to end, not only what it is doing.
 bool terminated();
 void clear_interrupt();
+/// How many of them have come so far.
+unsigned times_signalled();
 
 /// While it is lent, Ctrl-C and Ctrl-\ are for another program on the terminal that is waited for.
 void lend_keyboard(bool lent);
