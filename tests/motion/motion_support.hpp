@@ -166,6 +166,7 @@ class MotionBench {
       restarts = true;
     }
     if (!restarts) return;
+    wait(std::chrono::seconds(5));  // Two boot-ups at once would be those of two nodes.
     EXPECT_TRUE(bus->send(*can::parse_frame("000#8101")));
     wait(std::chrono::milliseconds(500));
     (void)session->take_events();
