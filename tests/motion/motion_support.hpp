@@ -166,8 +166,7 @@ class MotionBench {
       restarts = true;
     }
     if (!restarts) return;
-    wait(std::chrono::seconds(5));  // Two boot-ups at once would be those of two nodes.
-    EXPECT_TRUE(bus->send(*can::parse_frame("000#8101")));
+    EXPECT_TRUE(session->can()->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
     wait(std::chrono::milliseconds(500));
     (void)session->take_events();
   }
