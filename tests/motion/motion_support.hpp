@@ -9,8 +9,10 @@
 #include <memory>
 #include <string>
 
+#include "canopen/nmt.hpp"
 #include "drive/naming.hpp"
 #include "motion/motion_kinds.hpp"
+#include "session/can_network.hpp"
 #include "sim/cell.hpp"
 #include "tests/session/troubled_bus.hpp"
 #include "tests/source_dir.hpp"
