@@ -10,7 +10,7 @@
 namespace servoctl::show {
 namespace {
 
-constexpr std::string_view kAnd = " and ";
+constexpr std::string_view kBothLimits = "both limit switches";
 constexpr std::string_view kOther = "{} other than {}";
 constexpr std::string_view kFactory = " (factory value)";
 constexpr std::string_view kMasked =
@@ -69,7 +69,11 @@ class CautionWords {
 
   std::string switches() const {
     std::string out;
-    for (const auto input : caution_->masks) append(out, say(name(input)), say(kAnd));
+    const bool both = caution_->masks_input(drive::Input::negative_limit) &&
+                      caution_->masks_input(drive::Input::positive_limit);
+    if (both) out = say(kBothLimits);
+    for (const auto input : caution_->masks)
+      if (!both || input == drive::Input::home) append(out, say(name(input)));
     return out;
   }
 

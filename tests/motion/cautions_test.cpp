@@ -24,7 +24,8 @@ Look look(MotionBench& bench) {
 TEST(Cautions, AboutParametersThatNobodyCanReadAreToldAlways) {
   MotionBench bench("sv2");
   const auto told = look(bench);
-  EXPECT_TRUE(told.has("PA-20 cannot be read (check the panel): PA-20 = 1 (factory value): the drive ignores the negative limit switch"));
+  EXPECT_TRUE(told.has(
+      "PA-20 cannot be read (check the panel): PA-20 = 1 (factory value): the drive ignores both limit switches"));
   EXPECT_TRUE(told.has("PA-74 cannot be read"));
 }
 
@@ -38,8 +39,9 @@ TEST(Cautions, AboutTheElectronicGearHoldUnlessItIsZero) {
 
 TEST(Cautions, AboutForcedLimitInputsSayWhichOneIsForced) {
   MotionBench bench("gsd600", 131072);
-  const char* texts[] = {"", "the drive ignores the positive limit switch.", "the drive ignores the negative limit switch.",
-                         "the drive ignores the negative limit switch and the positive limit switch."};
+  const char* texts[] = {"", "the drive ignores the positive limit switch.",
+                         "the drive ignores the negative limit switch.",
+                         "the drive ignores both limit switches."};
   for (unsigned value = 0; value < 4; ++value) {
     ASSERT_TRUE(bench.session->download(1, {0x2003, 4}, store_le(value, 2)));
     const auto told = look(bench);
@@ -61,7 +63,7 @@ TEST(Cautions, SpeakChineseWithTheirLead) {
   Motion motion(*bench.session, bench.profile(), 1, bench.options);
   ASSERT_TRUE(motion.prepare());
   const Look told{motion.look(true).value()};
-  EXPECT_TRUE(told.has("无法读取 PA-20（查看面板）：PA-20 = 1（出厂值）：驱动器忽略负限位开关和正限位开关。"));
+  EXPECT_TRUE(told.has("无法读取 PA-20（查看面板）：PA-20 = 1（出厂值）：驱动器忽略正负限位开关。"));
   EXPECT_FALSE(told.has("cannot be read"));
 }
 

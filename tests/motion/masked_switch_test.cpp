@@ -112,8 +112,7 @@ TEST(Cautions, BelongToTheMotionThatTheyConcern) {
   MotionBench gsd600("gsd600", 131072);
   for (const auto use : {drive::Use::jog, drive::Use::move, drive::Use::torque})
     EXPECT_TRUE(tells(told_for(gsd600, {use}),
-                      "Pn0603 = 3 (factory value): the drive ignores the negative limit "
-                      "switch and the positive limit switch"));
+                      "Pn0603 = 3 (factory value): the drive ignores both limit switches"));
   EXPECT_FALSE(tells(told_for(gsd600, {drive::Use::enable}), "Pn0603"));
 }
 

@@ -9,8 +9,10 @@
 #include <memory>
 #include <string>
 
+#include "canopen/nmt.hpp"
 #include "drive/naming.hpp"
 #include "motion/motion_kinds.hpp"
+#include "session/can_network.hpp"
 #include "sim/cell.hpp"
 #include "tests/session/troubled_bus.hpp"
 #include "tests/source_dir.hpp"
@@ -166,7 +168,7 @@ class MotionBench {
       restarts = true;
     }
     if (!restarts) return;
-    EXPECT_TRUE(bus->send(*can::parse_frame("000#8101")));
+    EXPECT_TRUE(session->can()->send(canopen::nmt_frame(canopen::NmtCommand::reset_node, 1)));
     wait(std::chrono::milliseconds(500));
     (void)session->take_events();
   }
