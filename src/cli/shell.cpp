@@ -98,10 +98,12 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   }
   auto applied = apply_options(options_.defaults, parsed->arguments);
   if (!applied) return failed(applied.error(), std::move(settings), path);
+  if (parsed->command->all_by_default && !applied->nodes_typed) applied->nodes = "all";
   console_->set_quiet(applied->quiet);
   const ShownWait shown(*this);
   console_->set_verbose(applied->verbose);
   cabinet_told_ = false;
+  told_energised_.clear();
   auto out = perform_parsed(*parsed, *applied);
   // What is done behind the last line is done for it.
   if (stays_open_) console_->set_verbose(options_.defaults.verbose);
@@ -164,6 +166,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto opened = open(run.settings);
   if (!opened) return fail(opened.error());
   run.context.session = *opened;
+  run.energised_before = (*opened)->energised().nodes();
   if (const auto fits = check_registers(command, **opened, run.context.profile, run.settings.chinese); !fits)
     return fits;
   if (const auto possible = admit(command, arguments, **opened); !possible) return possible;
@@ -195,6 +198,10 @@ Result<void> Shell::prepare_nodes(Run& run) {
   const bool takes_all = run.command->to_all || reaches_silent || !includes(run.command->needs, Needs::node);
   if (nodes->front() == 0 && !takes_all) {
     nodes = session::nodes_present(*run.context.session);
+    // Where nobody can be looked for, what is known to be energised is still to be stopped.
+    const auto& energised = run.context.session->energised().nodes();
+    if (!nodes && run.command->way_out && !energised.empty())
+      nodes = std::vector(energised.begin(), energised.end());
     if (!nodes) return fail(nodes.error());
   }
   run.context.nodes = std::move(*nodes);
@@ -207,6 +214,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   hear_second_node(run);
   if (!result) errors.insert(errors.begin(), result.error());
   const bool is_lost = tell_lost_bus(run, met_loss);
+  if (!is_lost) tell_energised(run);
   tell_second_node(run);
   learn_from(run);
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
@@ -258,7 +266,11 @@ int Shell::hold() {
       console_->note("notice: " + printable(notice) + "\n");
     if (!stepped) return report_error(stepped.error(), false);
   }
-  if (cancelled()) return 0;
+  if (cancelled()) {
+    // This is how the user ends it.
+    bus_.let_go();
+    return 0;
+  }
   return report_error(make_error(Errc::negative, "process data ended before you ended them",
                                  "the lines above say why; `status` shows the state of the slave"),
                       false);
@@ -266,8 +278,18 @@ int Shell::hold() {
 
 int Shell::close(int code) {
   hear_last_line();
-  if (bus_.holds_drives()) bus_.let_go();
+  // Here, so that a signal that comes while nobody reads finds the bus still open.
+  console_->wait_for_reader();
+  const bool ends_by_signal = cancelled() && (signal_interrupts_ || bus_.leaves_power());
+  const auto interruption = exit_code(Errc::interrupted);
+  if (ends_by_signal && code == 0) code = interruption;
+  const bool lets_go = ends_by_signal || bus_.holds_drives();
+  if (lets_go && !bus_.has_warned_of_all())
+    bus_.let_go();
+  else if (const auto unknown = lets_go ? std::nullopt : tell_energised_at_end(); unknown && code == 0)
+    code = exit_code(*unknown);
   bus_.close();
+  if (const auto why = bus_.failure(); why && (code == 0 || code == interruption)) code = exit_code(*why);
   auto failure = bus_.take_trace_failure();
   if (!failure) failure = std::exchange(incomplete_trace_, std::nullopt);
   if (!failure) return code;

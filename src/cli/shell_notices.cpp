@@ -4,6 +4,7 @@
 
 #include "base/printable.hpp"
 #include "cli/shell.hpp"
+#include "motion/left_energised.hpp"
 #include "session/identify.hpp"
 #include "show/notice.hpp"
 
@@ -103,6 +104,39 @@ std::vector<std::string> Shell::take_written_to_both(session::Session& session) 
         "node {}: what was written may have gone to both drives: read it back from each alone", node));
     return true;
   });
+  return out;
+}
+
+void Shell::tell_energised(Run& run) {
+  auto* session = run.context.session;
+  if (session == nullptr || run.settings.dry_run) return;
+  auto nodes = session->energised().nodes();
+  for (const auto node : run.energised_before) nodes.erase(node);
+  // What a motion says of a drive that fell silent is that already.
+  for (const auto& error : run.context.errors)
+    if (error.node && error.code == Errc::timeout && run.command->effect == command::Effect::moves)
+      nodes.erase(*error.node);
+  motion::tell_left_energised(run.context, nodes);
+  for (const auto node : nodes) told_energised_.emplace(opening(*session), node);
+}
+
+std::optional<Errc> Shell::tell_energised_at_end() {
+  // What was tried in vain was told.
+  if (bus_.failure()) return std::nullopt;
+  std::optional<Errc> out;
+  for (auto* session : bus_.sessions()) {
+    auto nodes = session->energised().nodes();
+    std::erase_if(nodes, [&](auto node) { return told_energised_.contains({opening(*session), node}); });
+    command::Context context;
+    context.session = session;
+    motion::tell_left_energised(context, nodes);
+    const auto& names = bus_.names(*session);
+    for (const auto& notice : context.notices) console_->err("notice: " + printable(names.in(notice)) + "\n");
+    for (const auto& error : context.errors) {
+      console_->err("error: " + printable(names.in(error.message)) + "\n");
+      out = out.value_or(error.code);
+    }
+  }
   return out;
 }
 
