@@ -93,6 +93,7 @@ extern const Command kTestJog;
 extern const Command kTestHome;
 extern const Command kTestAll;
 extern const Command kReport;
+extern const Command kWitness;
 extern const Command kSyncOnce;
 extern const Command kSyncStart;
 extern const Command kSyncStop;
@@ -206,6 +207,7 @@ constexpr Named kNamed[] = {
     {"test home", &commands::kTestHome},
     {"test all", &commands::kTestAll},
     {"report", &commands::kReport},
+    {"witness", &commands::kWitness},
     {"sync once", &commands::kSyncOnce},
     {"sync start", &commands::kSyncStart},
     {"sync stop", &commands::kSyncStop},

@@ -11,6 +11,7 @@
 #include "command/command.hpp"
 #include "command/one_drive.hpp"
 #include "command/registry.hpp"
+#include "drive/provenance.hpp"
 #include "trial/comm_trial.hpp"
 #include "trial/report_head.hpp"
 #include "trial/verdict.hpp"
@@ -205,6 +206,10 @@ class Collection {
       auto one = part(std::string(wanted.id), say(wanted.title), wanted.command, node, factory);
       if (!one) return fail(one.error());
       const bool silent = one->value.is_null() && wanted.id == "identity";
+      if (wanted.id == "identity")
+        one->remarks.push_back(
+            say(fmt::format("the drive data were checked against: {}",
+                            drive::provenance_text(*context_->profile, context_->chinese))));
       out.parts.push_back(std::move(*one));
       if (silent) return out;  // Each further part would only wait for it.
     }

@@ -4,6 +4,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/provenance.hpp"
 #include "drive/rules_reader.hpp"
 #include "drive/toml_depth.hpp"
 
@@ -31,6 +32,7 @@ class RulesReader {
                               {"vendor", into(rules_.vendor)},
                               {"name", into(rules_.name)},
                               {"name_zh", into(rules_.name_zh)},
+                              {"provenance", [&](const auto& n) { return provenance(n); }},
                               {"identity", section(read_identity)},
                               {"numbering", tables(rules_.numbering, read_numbering)},
                               {"units", section(read_units)},
@@ -74,6 +76,14 @@ class RulesReader {
       const auto* inside = node.as_table();
       return inside != nullptr && note(parse(TableReader(*inside, file_), rules_));
     };
+  }
+
+  /// Kept by nobody: provenance_of() reads it when it is asked for.
+  bool provenance(const toml::node& node) {
+    const auto* inside = node.as_table();
+    if (inside == nullptr) return false;
+    const auto read = read_provenance(TableReader(*inside, file_));
+    return note(read ? Result<void>() : fail(read.error()));
   }
 
   /// A list of tables, `[[name]]`; replaces the parent's.

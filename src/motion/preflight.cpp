@@ -5,6 +5,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/provenance.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/operation_mode.hpp"
 #include "motion/power.hpp"
@@ -40,6 +41,7 @@ class Preflight {
     if (const auto done = look_at_needs(); !done) return fail(done.error());
     if (const auto done = look_at_objects(); !done) return fail(done.error());
     if (const auto done = look_at_cautions(); !done) return fail(done.error());
+    look_at_data();
     return std::move(items_);
   }
 
@@ -166,6 +168,15 @@ class Preflight {
           unread + (chinese_ && !caution.text_zh.empty() ? caution.text_zh : caution.text));
     }
     return {};
+  }
+
+  /// A drive that is simulated in this process is made from the same data: it proves nothing about them.
+  void look_at_data() {
+    const auto& url = session_->url();
+    if (url.starts_with("sim:") || url.find(":sim:") != std::string::npos) return;
+    add(Weight::note, "data",
+        fmt::format("the drive data were checked against: {}",
+                    drive::provenance_text(units_->profile(), chinese_)));
   }
 
   session::Session* session_;

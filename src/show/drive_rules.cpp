@@ -4,7 +4,9 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/provenance.hpp"
 #include "drive/standard_objects.hpp"
+#include "show/provenance_record.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::show {
@@ -18,16 +20,10 @@ using report::Record;
 using report::Show;
 using report::Value;
 
-Value text_list(const std::vector<std::string>& words) {
-  List out;
-  for (const auto& word : words) out.emplace_back(word);
-  return out.empty() ? Value() : Value(std::move(out));
-}
-
 template <class T>
-Value number_list(const std::vector<T>& numbers) {
+Value list_of(const std::vector<T>& all) {
   List out;
-  for (const auto number : numbers) out.emplace_back(number);
+  for (const auto& one : all) out.emplace_back(one);
   return out.empty() ? Value() : Value(std::move(out));
 }
 
@@ -126,8 +122,8 @@ Value pdo(const Rules& rules) {
              {"most_bits", r.most_bits, Show::everywhere, "bits at most"},
              {"clears_entries", r.clears_entries, Show::json},
              {"mapped_abort", Hex{r.mapped_abort, 8}, Show::json},
-             {"presets", text_list(presets), Show::everywhere, "recommended mappings"},
-             {"refused_types", number_list(r.refused_types), Show::everywhere, "types refused"},
+             {"presets", list_of(presets), Show::everywhere, "recommended mappings"},
+             {"refused_types", list_of(r.refused_types), Show::everywhere, "types refused"},
              {"assign_rpdo", report::text_or_null(r.assign_rpdo), Show::everywhere, "RPDO assignment"},
              {"assign_tpdo", report::text_or_null(r.assign_tpdo), Show::everywhere, "TPDO assignment"}};
   for (auto& type : types) out.push_back(std::move(type));
@@ -155,7 +151,7 @@ Value store(const drive::Profile& profile) {
                 {"wears", r.wears, Show::everywhere, "writes wear the flash"},
                 {"unlock", report::text_or_null(r.unlock), Show::everywhere, "password"},
                 {"unlock_open", optional(r.unlock_open), Show::everywhere, "password opens"},
-                {"locked", text_list(r.locked)},
+                {"locked", list_of(r.locked)},
                 {"restore_at_start", report::text_or_null(r.restore_at_start), Show::everywhere,
                  "restores at the next start"}};
 }
@@ -177,8 +173,8 @@ Value modbus(const Rules& rules, bool chinese) {
                 {"baud", report::text_or_null(r.baud), Show::everywhere, "speed in"},
                 {"framing", report::text_or_null(r.framing), Show::everywhere, "RTU or ASCII in"},
                 {"silence_ms", r.silence_ms, Show::everywhere, "silence (ms)"},
-                {"at_rest", text_list(r.at_rest), Show::everywhere, "0 at rest"},
-                {"targets", text_list(r.targets), Show::everywhere, "targets"},
+                {"at_rest", list_of(r.at_rest), Show::everywhere, "0 at rest"},
+                {"targets", list_of(r.targets), Show::everywhere, "targets"},
                 {"motion", report::text_or_null(chinese && !r.motion_zh.empty() ? r.motion_zh : r.motion)}};
 }
 
@@ -195,11 +191,11 @@ Value motion(const Rules& rules) {
       {"enable", words_list(r.enable)},
       {"start_homing", r.homing ? words_list(r.start_homing) : Value(), Show::everywhere, "start homing"},
       {"halt", r.halt, Show::everywhere, "halt bit"},
-      {"quick_stop_stays_enabled", number_list(rules.quick_stop_stays_enabled), Show::everywhere,
+      {"quick_stop_stays_enabled", list_of(rules.quick_stop_stays_enabled), Show::everywhere,
        "605Ah that stays energised"},
-      {"inputs_active_low", number_list(r.inputs_active_low), Show::everywhere, "60FDh bits, 0 when on"},
-      {"speed_limit", text_list(r.speed_limit), Show::everywhere, "speed limit in torque mode"},
-      {"without_controlword", text_list(power_parameters), Show::everywhere, "energises without 6040h"}};
+      {"inputs_active_low", list_of(r.inputs_active_low), Show::everywhere, "60FDh bits, 0 when on"},
+      {"speed_limit", list_of(r.speed_limit), Show::everywhere, "speed limit in torque mode"},
+      {"without_controlword", list_of(power_parameters), Show::everywhere, "energises without 6040h"}};
 }
 
 Value fault(const Rules& rules) {
@@ -267,6 +263,8 @@ Record rules_record(const drive::Profile& profile, bool chinese) {
              {"parent", report::text_or_null(rules.parent)},
              {"vendor", rules.vendor},
              {"name", chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name},
+             {"provenance", drive::provenance_text(profile, chinese), Show::text, "checked against"},
+             {"provenance", provenance_record(drive::provenance_of(profile)), Show::json},
              {"objects", profile.dictionary.objects().size()},
              {"entries", profile.dictionary.entry_count()},
              {"parameters", profile.parameters.size()},
@@ -289,7 +287,7 @@ Record rules_record(const drive::Profile& profile, bool chinese) {
              {"fault", fault(rules), Show::everywhere, "faults and emergencies"},
              {"cautions", caution_text(rules, chinese), Show::text, "before motion"},
              {"cautions", cautions(rules, chinese), Show::json},
-             {"assumed", text_list(rules.assumed), Show::everywhere, "not in the manual"},
+             {"assumed", list_of(rules.assumed), Show::everywhere, "not in the manual"},
              {"contradicted", report::text_or_null(od::to_text(rules.contradicted)), Show::text,
               "the manual is inconsistent on"},
              {"contradicted", marks_record(rules.contradicted), Show::json}};

@@ -97,6 +97,7 @@ LINES = {
     "pdo preset": ("pdo preset pv" + SILENT, ELAPSED),
     "pdo apply": ("pdo apply pdos.toml" + SILENT, ELAPSED),
     "pdo save": ("pdo save late.toml" + SILENT, ELAPSED),
+    "witness": ("witness late.json" + SILENT, ELAPSED),
     "pdo watch": ("pdo watch --for 2s -o jsonl" + THERE, LEFT),
     "pdo send": ("pdo send RPDO1 0x06" + SILENT, ELAPSED),
     "test comm": ("test comm --count 80 --longest 10s -b sim:gsd600@1?delay=20ms -n 1 -d gsd600", LEFT),

@@ -11,7 +11,7 @@ DIALECT = jsonschema.Draft202012Validator
 ANNOTATIONS = ("title", "description", "$comment")
 # Files that the program writes and reads: their schema, and the key that tells them apart.
 FILES = {"backup-file": "servoctl_backup", "restore-journal": "servoctl_journal", "address-journal": "servoctl_address_plan",
-         "report-file": "servoctl_report", "pdo-file": "format"}
+         "report-file": "servoctl_report", "witness-file": "servoctl_witness", "pdo-file": "format"}
 LEFT_OUT = "a person may leave it out of the file: `pdo apply` leaves it as it is"
 # Keys that come and go, and why; every other key of a record is always there. Beside them `axis` stands in each record with `node`
 # where the line names axes of a cabinet file, and a frame has the keys of its service.

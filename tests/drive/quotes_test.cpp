@@ -49,8 +49,8 @@ std::string bare(std::string_view text) {
 
 /// Keys of the rules in the file: `rule nmt.node_id`, `rule caution 2`, `rule pdo.types.254`.
 void add_rules(const toml::table& table, const std::string& before, std::set<std::string>& out) {
-  static const std::set<std::string_view> kNotRules{"format",  "family", "vendor",  "name",
-                                                    "name_zh", "parent", "assumed", "contradicted"};
+  static const std::set<std::string_view> kNotRules{
+      "format", "family", "vendor", "name", "name_zh", "parent", "assumed", "contradicted", "provenance"};
   for (const auto& [key, node] : table) {
     const std::string_view name = key.str();
     if (before.empty() && kNotRules.count(name) != 0) continue;
