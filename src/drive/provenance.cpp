@@ -13,7 +13,7 @@
 namespace servoctl::drive {
 namespace {
 
-bool get(const toml::node& node, TriedDrive& out) {
+bool read_drive(const toml::node& node, TriedDrive& out) {
   return has_only(node, {"model", "firmware", "date"}) && drive::get(at(node, "model"), out.model) &&
          drive::get(at(node, "firmware"), out.firmware) && drive::get(at(node, "date"), out.date) &&
          !out.model.empty() && !out.firmware.empty() && !out.date.empty();
@@ -24,7 +24,7 @@ bool get(const toml::node& node, TriedDrive& out) {
 Result<Provenance> read_provenance(const TableReader& reader) {
   Provenance out;
   const auto drives = [&](const toml::node& node) {
-    return get_list(node, out.drives, [](const toml::node& n, TriedDrive& o) { return get(n, o); });
+    return get_list(node, out.drives, [](const toml::node& n, TriedDrive& o) { return read_drive(n, o); });
   };
   const auto done = reader.read({{"manual", into(out.manual)},
                                  {"manual_zh", into(out.manual_zh)},

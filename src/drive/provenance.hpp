@@ -34,8 +34,8 @@ Result<Provenance> read_provenance(const TableReader& reader);
 /// against says nothing about it.
 Provenance provenance_of(const Profile& profile);
 
-/// In one line: `GSD600 manual V1.0 (2023-12-22) and the simulated drive; no real drive yet`. Data that do not
-/// say it: `not stated`.
+/// In one line: `GSD600 manual V1.0 (2023-12-22) and the simulated drive; no real drive yet`. Data that do
+/// not say it: `not stated`.
 std::string provenance_text(const Profile& profile, bool chinese);
 
 }  // namespace servoctl::drive

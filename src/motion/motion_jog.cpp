@@ -15,7 +15,7 @@ constexpr Duration kJogSettling = std::chrono::milliseconds(1500);
 /// So long after the command a motor that obeys turns, and the right way round.
 constexpr Duration kMostDelay = std::chrono::milliseconds(1500);
 /// Of the commanded speed, once that should be reached.
-constexpr double kLeastPart = 0.5;
+constexpr double kLeastPartOfSpeed = 0.5;
 constexpr double kMostTurns = 1e6;
 constexpr Duration kForEver = std::chrono::hours(24);
 
@@ -131,7 +131,7 @@ class Jogging {
       return fail(motion_->error(Errc::negative, "does not turn although commanded to",
                                  "is it blocked, is the brake on, or does a limit hold it back?"));
     // Ramps of the user's own take their time.
-    if (settled && !motion_->has_own_ramps() && std::abs(*speed) < std::abs(wanted) * kLeastPart)
+    if (settled && !motion_->has_own_ramps() && std::abs(*speed) < std::abs(wanted) * kLeastPartOfSpeed)
       return fail(motion_->error(Errc::negative,
                                  fmt::format("turns at {} {}, less than half of the {} that were commanded",
                                              number_text(*speed), plan_->unit, number_text(wanted)),

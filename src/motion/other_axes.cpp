@@ -13,7 +13,7 @@ constexpr unsigned kMostAxes = 8;
 constexpr std::uint16_t kAxisStep = 0x0800;
 /// Low word of 1000h (CiA 402-2, device type).
 constexpr std::uint64_t kDriveProfile = 0x0192;
-constexpr Duration kStatePause = std::chrono::milliseconds(5);
+constexpr Duration kAxisPause = std::chrono::milliseconds(5);
 
 ObjectAddress of_axis(ObjectAddress object, unsigned number) {
   return {static_cast<std::uint16_t>(object.index + (number - 1) * kAxisStep), object.sub};
@@ -80,7 +80,7 @@ Result<void> stop_axes(session::Session& session, std::uint8_t node, std::vector
     const auto end = session.now() + Power::kPatience;
     do {
       axis.statusword = read_word(session, node, axis);
-    } while (axis.may_be_energised() && session.now() < end && pause(session, kStatePause));
+    } while (axis.may_be_energised() && session.now() < end && pause(session, kAxisPause));
     const bool stands = !disable && axis.statusword &&
                         drive::decode_state(*axis.statusword) == drive::DriveState::quick_stop_active;
     if (out && axis.may_be_energised() && !stands)

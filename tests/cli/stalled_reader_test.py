@@ -105,7 +105,7 @@ try:
         reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
         fcntl.fcntl(reader, fcntl.F_SETPIPE_SZ, 4096)
         backup = os.path.join(folder, "backup.json")
-        done = subprocess.run([servoctl, "backup", backup, "--trace", fifo], env=env, capture_output=True, text=True)
+        done = subprocess.run([servoctl, "backup", backup, "--trace", fifo, "--yes"], env=env, capture_output=True, text=True)
         check(f"trace: exit 7, not {done.returncode}", done.returncode == 7)
         check(f"trace: it is told\n{done.stderr}", "frames are missing in the trace" in done.stderr)
         check("trace: the backup is whole", len(json.load(open(backup))) > 3)

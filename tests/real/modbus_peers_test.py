@@ -137,7 +137,7 @@ def ask(what, bus, server):
         told = json.loads(answer.stdout)["result"][0]
         check(f"{what}: inputs and outputs\n{answer.stdout}{answer.stderr}",
               told["inputs"] == [False, False, True] + [False] * 5 and told["outputs"] == [True, False, False, False])
-        answer = run(bus, "backup", "peer.json", "-n", "1")
+        answer = run(bus, "backup", "peer.json", "-n", "1", "--yes")
         check(f"{what}: backup of all parameters\n{answer.stdout}{answer.stderr}", answer.returncode == 0)
         answer = run(bus, "read", "Dn_2F", "-n", "1", "--json")
         check(f"{what}: the last register\n{answer.stdout}", answer.returncode == 0)

@@ -86,12 +86,12 @@ drive read 0x1000 >"$work/out" 2>"$work/err" || fail "a read is not ridden out"
 wait $!
 
 short "a batch file" drive run "$work/reads"
-short "backups" drive run "$work/backups"
+short "backups" drive run "$work/backups" --yes
 short "watch" drive watch 0x6041 --for 3s
 short "a motion" drive jog 60rpm --for 4s --turn 131072 --yes
 long "a batch file" drive run "$work/reads"
 rm -f "$work"/*.json
-long "backups" drive run "$work/backups"
+long "backups" drive run "$work/backups" --yes
 for file in "$work"/*.json; do drive verify "$file" >"$work/out" 2>"$work/err" || fail "half a backup looks whole"; done
 long "watch" drive watch 0x6041 --for 20s
 long "scope" drive scope 0x6064 --for 20s
