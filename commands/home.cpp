@@ -55,8 +55,8 @@ Result<report::Value> run_home(Context& context, const Arguments& arguments) {
 constexpr Example kHomeExamples[] = {
     {"home 35 --speed 30rpm --search 5rpm -n 1 -d gsd600 --turn 131072",
      "the present position becomes home; 131072: take your motor's counts a turn"},
-    {"home 17 --speed 60rpm --search 10rpm --window 5rev -n 1 -d sv2 --panel PA-20=0,PA-74=1",
-     "to the negative limit switch, 5 turns at most; the panel shows that the drive acts on it"},
+    {"home 17 --speed 60rpm --search 10rpm -n 1 -d sv2 --panel PA-20=0,PA-74=1",
+     "to the negative limit switch; the panel shows that the drive acts on it"},
 };
 
 }  // namespace

@@ -41,8 +41,8 @@ Result<void> check_test_home(Context& context, const Arguments& arguments) {
 }
 
 constexpr Example kTestHomeExamples[] = {
-    {"test home 17 --spread 0.5 --limit 900rpm --window 5rev -n 1 -d sv2 --panel PA-20=0,PA-74=1",
-     "five times at 900 rpm (from the factory), home within half a degree"},
+    {"test home 17 --limit 900rpm --spread 1 -n 1 -d sv2 --panel PA-20=0,PA-74=1",
+     "five times at 900 rpm (from the factory), home within one degree"},
     {"test home --limit 600rpm --window 5rev -n 1 -d gsd600 --turn 131072",
      "by the method set in the drive, 5 turns at most; 131072: your motor's counts"},
 };
