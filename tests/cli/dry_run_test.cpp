@@ -152,12 +152,26 @@ class DryRun : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(DryRun, ShowsWhatIsSentByCommandsThatStoreResetAndSwitch) {
-  for (const auto* line :
-       {"store -n 1", "store communication -n 1", "defaults -n 1", "disable -n 1", "quick-stop -n 1",
-        "mode 1 -n 1", "mode 3 -n 1", "mode 99 -n 1", "enable -n 1", "fault reset -n 1",
-        "fault clear-history -n 1", "nmt start -n 1", "pdo map TPDO1 0x6041 -n 1",
-        "pdo map TPDO1 0x6041 --keep -n 1", "pdo clear RPDO1 -n 1", "write 0x6083 2000 -n 1",
-        "write 0x6083 2000 --keep -n 1", "write 0x6040 6 -n 1", "write 0x6083 2000 --unlock -n 1"})
+  for (const auto* line : {"store -n 1",
+                           "store communication -n 1",
+                           "defaults -n 1",
+                           "disable -n 1",
+                           "quick-stop -n 1",
+                           "stop",
+                           "mode 1 -n 1",
+                           "mode 3 -n 1",
+                           "mode 99 -n 1",
+                           "enable -n 1",
+                           "fault reset -n 1",
+                           "fault clear-history -n 1",
+                           "nmt start -n 1",
+                           "pdo map TPDO1 0x6041 -n 1",
+                           "pdo map TPDO1 0x6041 --keep -n 1",
+                           "pdo clear RPDO1 -n 1",
+                           "write 0x6083 2000 -n 1",
+                           "write 0x6083 2000 --keep -n 1",
+                           "write 0x6040 6 -n 1",
+                           "write 0x6083 2000 --unlock -n 1"})
     expect_true(line);
   EXPECT_GE(carried_out, 8);
 }
