@@ -120,26 +120,6 @@ void Shell::tell_energised(Run& run) {
   for (const auto node : nodes) told_energised_.emplace(opening(*session), node);
 }
 
-std::optional<Errc> Shell::tell_energised_at_end() {
-  // What was tried in vain was told.
-  if (bus_.failure()) return std::nullopt;
-  std::optional<Errc> out;
-  for (auto* session : bus_.sessions()) {
-    auto nodes = session->energised().nodes();
-    std::erase_if(nodes, [&](auto node) { return told_energised_.contains({opening(*session), node}); });
-    command::Context context;
-    context.session = session;
-    motion::tell_left_energised(context, nodes);
-    const auto& names = bus_.names(*session);
-    for (const auto& notice : context.notices) console_->err("notice: " + printable(names.in(notice)) + "\n");
-    for (const auto& error : context.errors) {
-      console_->err("error: " + printable(names.in(error.message)) + "\n");
-      out = out.value_or(error.code);
-    }
-  }
-  return out;
-}
-
 /// The line was carried out; those that follow are too.
 void Shell::tell_trace_failure(Run& run) {
   auto failure = bus_.take_trace_failure();
