@@ -30,9 +30,13 @@ report::Table state_table() {
   return table;
 }
 
+constexpr std::string_view kDeEnergised = "de-energised";
+
 /// Nothing was stopped, or disabled, where nothing had power.
 std::string_view result_text(const motion::PowerDownResult& done, std::string_view done_word) {
   if (!done.outcome) return "failed";
+  // True of it whether or not it was energised before, which nothing tells behind a quick stop.
+  if (done_word == kDeEnergised) return done_word;
   if (done.had_power() == false) return "it was already disabled (power stage off; mains may be live)";
   const bool is_stop = done.quick_stop;
   return is_stop && done.is_without_power() && !done.had_power()
@@ -119,6 +123,19 @@ Result<Value> run_quick_stop(Context& context, const Arguments&) {
   return power_down(context, motion::PowerAim::stop, "stopped");
 }
 
+/// What was energised here is stopped whether or not it is among the axes of a cabinet file.
+Result<Value> run_stop(Context& context, const Arguments&) {
+  auto& nodes = context.nodes;
+  const bool means_all = !context.nodes_typed && nodes.front() != 0;
+  for (const auto node : context.session->energised().nodes())
+    if (means_all && std::find(nodes.begin(), nodes.end(), node) == nodes.end()) nodes.push_back(node);
+  return power_down(context, motion::PowerAim::stop_and_disable, kDeEnergised);
+}
+
+constexpr Example kStopExamples[] = {
+    {"stop", "everything: every drive of the bus, or every axis of the cabinet file"},
+    {"stop -n 1,3", "these drives alone"},
+};
 constexpr Example kDisableExamples[] = {
     {"disable -n 1", "de-energise a drive; nothing is asked"},
     {"disable -n all", "every drive of the bus, those that answer nothing too"},
@@ -148,6 +165,7 @@ const Command kDisable{
     .family = FamilyCheck::never,
     .run = run_disable,
     .to_silent = true,
+    .way_out = true,
 };
 
 extern const Command kQuickStopCommand;
@@ -166,6 +184,28 @@ const Command kQuickStopCommand{
     .family = FamilyCheck::never,
     .run = run_quick_stop,
     .to_silent = true,
+    .way_out = true,
+};
+
+extern const Command kStop;
+const Command kStop{
+    .path = "stop",
+    .summary = "Stop and de-energise every drive",
+    .details =
+        "Quick stop, then disable: sends controlword 02h to all nodes before waiting for any answer, and 07h and 00h "
+        "as soon as a drive has stopped, without asking. Without -n it is -n all, whatever `use` says: on CAN all "
+        "127 node-IDs, with a cabinet file in use its axes on all their buses, and every drive that was energised "
+        "here. A drive that does not obey or answer is also sent NMT pre-operational. Over EtherCAT every slave "
+        "goes to PRE-OP. The result is the state read afterwards.",
+    .parameters = {},
+    .examples = kStopExamples,
+    .needs = Needs::node,
+    .effect = Effect::writes,
+    .family = FamilyCheck::never,
+    .run = run_stop,
+    .to_silent = true,
+    .way_out = true,
+    .all_by_default = true,
 };
 
 }  // namespace servoctl::commands

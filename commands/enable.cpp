@@ -181,9 +181,6 @@ Result<Value> run_enable(Context& context, const Arguments& arguments) {
   enabling.run(rehearsal);
   if (context.dry_run) return show::planned_messages(context, rehearsal.messages());
   auto table = enabling.table();
-  if (context.errors.empty())
-    for (const auto node : context.nodes)
-      context.notices.push_back(motion::energised_notice(*context.session, node));
   return Value(std::move(table));
 }
 

@@ -3,7 +3,7 @@
 
 #include "base/text.hpp"
 #include "command/command.hpp"
-#include "drive/standard_objects.hpp"
+#include "drive/enabling_write.hpp"
 #include "pdo/pdo_use.hpp"
 #include "session/can_network.hpp"
 #include "session/state_pause.hpp"
@@ -58,12 +58,14 @@ Result<void> check_count(const show::PdoView& view, std::size_t given) {
 struct Message {
   can::Frame frame;
   std::string text;
+  bool enables = false;  ///< It energises the drive.
 };
 Result<Message> make_message(Context& context, const show::PdoView& view,
                              std::span<const std::string> values) {
   if (const auto right = check_count(view, values.size()); !right) return fail(right.error());
   std::vector<Bytes> data;
   std::size_t next = 0;
+  bool enables = false;
   for (const auto& entry : view.pdo.entries) {
     if (entry.is_gap()) {
       data.emplace_back();
@@ -72,10 +74,11 @@ Result<Message> make_message(Context& context, const show::PdoView& view,
     const auto& field = view.fields[next];
     auto change = settings::make_change(context, view.node, field.target, values[next], field.type);
     if (!change) return fail(change.error());
+    enables = enables || drive::is_enabling_write(entry.object, change->data);
     data.push_back(std::move(change->data));
     ++next;
   }
-  Message out{canopen::pdo_frame(view.can_id(), canopen::pack_pdo(view.pdo.entries, data)), {}};
+  Message out{canopen::pdo_frame(view.can_id(), canopen::pack_pdo(view.pdo.entries, data)), {}, enables};
   show::append_values(view, out.frame.payload(), context.chinese, out.text);
   return out;
 }
@@ -124,10 +127,10 @@ Result<Value> run_pdo_send(Context& context, const Arguments& arguments) {
           fmt::format("Send {} to node {}: {}? The motor may move.", view.name, view.node, message->text));
       !sure)
     return fail(sure.error());
-  const auto& entries = view.pdo.entries;
-  if (std::any_of(entries.begin(), entries.end(),
-                  [](const auto& e) { return e.object == objects::kControlword; }))
+  if (message->enables) {
     context.session->energised().insert(view.node);
+    context.session->network().expect_power(view.node);
+  }
   if (const auto sent = context.session->can()->send(message->frame); !sent) return fail(sent.error());
   if (view.pdo.type <= kLastSynchronous)
     context.notices.push_back(fmt::format("{} takes effect at the next SYNC: `sync once`", view.name));

@@ -55,6 +55,7 @@ extern const Command kFaultClearHistory;
 extern const Command kEnable;
 extern const Command kDisable;
 extern const Command kQuickStopCommand;
+extern const Command kStop;
 extern const Command kMode;
 extern const Command kJog;
 extern const Command kMove;
@@ -168,6 +169,7 @@ constexpr Named kNamed[] = {
     {"enable", &commands::kEnable},
     {"disable", &commands::kDisable},
     {"quick-stop", &commands::kQuickStopCommand},
+    {"stop", &commands::kStop},
     {"mode", &commands::kMode},
     {"jog", &commands::kJog},
     {"move", &commands::kMove},

@@ -180,7 +180,6 @@ Result<void> send_recorded(Context& context, const traffic::ReplayPlan& plan,
     return fail(std::move(error));
   }
   answer.push_back({"sent", replay.sent()});
-  motion::tell_left_energised(context);
   tell_failures(context, replay);
   answer.push_back(
       {"failures", failures_table(context, replay.failures()), shown(!replay.failures().empty())});

@@ -44,7 +44,9 @@ Result<void> run_on_ethercat(Context& context, std::string_view drives, std::str
   for (const auto& slave : cell->slaves) nodes.emplace_back(slave->model().node());
   tell_simulated(context, url, std::move(nodes));
   if (context.dry_run) return {};
-  return (*end)->serve(*cell);
+  auto served = (*end)->serve(*cell);
+  (*end)->close();
+  return served;
 }
 
 Result<void> run_on_modbus(Context& context, std::string_view drives, std::string_view url) {

@@ -66,6 +66,10 @@ class Bus {
   /// When the bus wants receive() called although its descriptor is not readable: something is due or kept
   /// inside; kNever when there is nothing such.
   virtual TimePoint next_event() const { return kNever; }
+
+  /// The last call: whoever writes a trace leaves the bus, then brings what is left to the file and tells
+  /// what could not be written. A destructor tells nobody.
+  virtual void end_trace() {}
 };
 
 }  // namespace servoctl::can

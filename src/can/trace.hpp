@@ -65,11 +65,16 @@ class TraceBus final : public Bus {
   TimePoint next_event() const override;
   std::vector<std::string> take_notices() override;
   void flush_trace() override { file_.flush(now()); }
+  /// The bus is left before the reader is waited for: nobody waits for servoctl there.
+  void end_trace() override {
+    inner_.reset();
+    file_.end();
+  }
 
  private:
   void record(const Frame& frame, TimePoint time);
 
-  TraceFile file_;  ///< Waits for its reader at the end, when the bus is left: nobody waits for us there.
+  TraceFile file_;
   std::unique_ptr<Bus> inner_;
   std::string interface_name_;
   Duration clock_offset_;  ///< From the bus's clock to the times in the file.

@@ -39,11 +39,17 @@ Result<TraceFile> TraceFile::open(const std::filesystem::path& file, TraceFailed
 }
 
 TraceFile::~TraceFile() {
+  failed_ = {};
+  if (file_) flush(steady_now());
+}
+
+void TraceFile::end() {
   if (!file_) return;
   flush_to_slow_reader();
   missing_ += left_out_ + sizes_.size();
   if (file_ && missing_ > 0 && failed_)
     failed_(fail(Errc::file, left_out_words(missing_, name_), "let the reader read to the end").value());
+  file_ = Descriptor();
 }
 
 void TraceFile::put(std::string_view record, TimePoint now) {

@@ -18,11 +18,12 @@ namespace servoctl::can {
 using TraceFailed = std::function<void(const Error& error)>;
 
 /// The file of a trace, to which records are written as they come. A record reaches it at most 100 ms late,
-/// where flush_when_due() is called as flush_due() asks for; flush() and the end bring what is left. A pipe
+/// where flush_when_due() is called as flush_due() asks for; flush() and end() bring what is left. A pipe
 /// or terminal that nobody reads is not waited for: a megabyte is kept for it, records beyond that are left
-/// out and counted in take_notice(), and half a second is given to it at the end; `failed` is told the count
+/// out and counted in take_notice(), and half a second is given to it by end(); `failed` is told the count
 /// of all that is missing. When it cannot be written later on, `failed` is told, once, and no record is taken
-/// any more. Reads no clock but in its end.
+/// any more. Reads no clock but in end(). The destructor writes what is left, as far as it is taken at once,
+/// and tells nobody.
 class TraceFile {
  public:
   /// An existing file is replaced. Errc::file when it cannot be made, or is a named pipe that nobody has
@@ -42,6 +43,8 @@ class TraceFile {
   void put_head(std::string_view head, TimePoint now);
   void flush(TimePoint now);
   void flush_when_due(TimePoint now);
+  /// Brings what is left to the reader and tells `failed` what is missing; no record is taken after it.
+  void end();
   /// kNever while nothing is kept.
   TimePoint flush_due() const;
   /// Records that were left out since the last call, in words.

@@ -197,13 +197,15 @@ void BusHolder::drop() {
   for (auto* session : sessions()) drop(*session);
 }
 
-void BusHolder::drop(session::Session& session) {
+void BusHolder::drop(session::Session& session, bool is_lost) {
   const auto url = session::canonical_url(session.url());
-  if (!session.energised().empty()) left_energised_.insert_or_assign(url, std::move(session.energised()));
   flushing_ = true;  // What the trace could not take to the last is told by who takes its failure.
+  const auto closed = session.close();
+  flushing_ = false;
+  if (!closed && !is_lost) fail_closing(names(session), closed.error());
+  if (!session.energised().empty()) left_energised_.insert_or_assign(url, std::move(session.energised()));
   opened_.erase(&session);
   open_.erase(url);
-  flushing_ = false;
   session_ = open_.empty() ? nullptr : open_.begin()->second.get();
 }
 

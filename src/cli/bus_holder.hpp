@@ -109,6 +109,11 @@ class BusHolder {
   void lose(session::Session& session);
   /// Stops and disables the drives that were left energised, and says so; a lost bus is opened again for it.
   void let_go();
+  /// Why the program may not end with 0 or as merely interrupted: a drive that was told to be energised
+  /// perhaps, and has not been seen otherwise since; or what could not be put back when a bus was closed.
+  std::optional<Errc> failure() const;
+  /// Whether every drive that may be energised was tried in vain, and told.
+  bool has_warned_of_all() const;
 
  private:
   /// Does what is due on the bus while the user is waited for; the answer is how long it has time.
@@ -126,9 +131,12 @@ class BusHolder {
   void stop_and_disable(session::Session& session);
   void stop_sync(session::Session& session);
   void drop();
-  void drop(session::Session& session);
+  /// `is_lost`: what cannot be put back over it was told as its loss.
+  void drop(session::Session& session, bool is_lost = false);
+  void fail_closing(const show::AxisNames& names, const Error& error);
   void on_trace_failed(const Error& error);
-  void warn(const show::AxisNames& names, std::uint8_t node, std::string_view why);
+  void warn(session::Session& session, std::uint8_t node, const Error& why);
+  void warn(const std::string& url, std::uint8_t node, const Error& why);
 
   Console* console_;
   session::BusOptions bus_options_;
@@ -146,6 +154,9 @@ class BusHolder {
   std::map<const session::Session*, Opened> opened_;  ///< Those that are open.
   std::uint64_t openings_ = 0;
   std::map<std::string, session::EnergisedNodes> left_energised_;  ///< By canonical_url() of one not open.
+  /// By canonical_url() and node: why a drive was told to be energised perhaps.
+  std::map<std::pair<std::string, std::uint8_t>, Errc> warned_;
+  std::optional<Errc> closing_failure_;
 };
 
 }  // namespace servoctl::cli

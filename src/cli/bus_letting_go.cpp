@@ -1,5 +1,7 @@
 #include <fmt/format.h>
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -21,10 +23,11 @@ constexpr Duration kTelling = std::chrono::seconds(1);
 }  // namespace
 
 void BusHolder::lose(session::Session& session) {
-  for (const auto node : session.energised().nodes()) warn(names(session), node, session.url() + " was lost");
+  const auto lost = make_error(Errc::bus, session.url() + " was lost");
+  for (const auto node : session.energised().nodes()) warn(session, node, lost);
   if (produces_sync(session))
     console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));
-  drop(session);
+  drop(session, true);
 }
 
 void BusHolder::let_go() {
@@ -36,7 +39,7 @@ void BusHolder::let_go() {
   if (!left.empty()) drop();
   for (const auto& [url, nodes] : left) {
     if (const auto back = connect_again(url, nodes); !back) {
-      for (const auto node : nodes) warn(names_[url], node, back.error().message);
+      for (const auto node : nodes) warn(url, node, back.error());
       continue;
     }
     stop_and_disable();
@@ -74,12 +77,44 @@ void BusHolder::stop_and_disable(session::Session& session) {
     if (done)
       console_->err("notice: " + names(session).in(motion::disabled_notice(node)) + "\n");
     else
-      warn(names(session), node, done.error().message);
+      warn(session, node, done.error());
   }
 }
 
-void BusHolder::warn(const show::AxisNames& names, std::uint8_t node, std::string_view why) {
-  console_->err("error: " + names.in(motion::power_warning(node, why)) + "\n");
+void BusHolder::warn(session::Session& session, std::uint8_t node, const Error& why) {
+  warn(session::canonical_url(session.url()), node, why);
+}
+
+void BusHolder::warn(const std::string& url, std::uint8_t node, const Error& why) {
+  warned_[{url, node}] = why.code;
+  console_->err("error: " + names_[url].in(motion::power_warning(node, why.message)) + "\n");
+}
+
+void BusHolder::fail_closing(const show::AxisNames& names, const Error& error) {
+  if (!closing_failure_) closing_failure_ = error.code;
+  console_->err("error: " + names.in(printable(error.message)) + "\n");
+}
+
+bool BusHolder::has_warned_of_all() const {
+  const auto warned = [this](const std::string& url, const session::EnergisedNodes& energised) {
+    const auto& nodes = energised.nodes();
+    return std::all_of(nodes.begin(), nodes.end(), [&](auto node) { return warned_.contains({url, node}); });
+  };
+  return !warned_.empty() && std::all_of(open_.begin(), open_.end(), [&](const auto& one) {
+    return warned(one.first, one.second->energised());
+  }) && std::all_of(left_energised_.begin(), left_energised_.end(), [&](const auto& one) {
+    return warned(one.first, one.second);
+  });
+}
+
+std::optional<Errc> BusHolder::failure() const {
+  for (const auto& [place, why] : warned_) {
+    const auto nodes = energised_on(place.first);
+    if (std::find(nodes.begin(), nodes.end(), place.second) == nodes.end()) continue;
+    // An end that is merely interrupted leaves nothing energised.
+    return why == Errc::interrupted ? Errc::negative : why;
+  }
+  return closing_failure_;
 }
 
 }  // namespace servoctl::cli

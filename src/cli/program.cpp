@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <span>
@@ -58,6 +57,7 @@ bool takes_rest(const std::string& line) {
 /// begins goes on behind it, as at the prompt, and ends with the input.
 int run_pipe(Shell& shell) {
   auto& input = standard_input();
+  shell.end_interrupted_by_signal();
   LineRunner runner(shell);
   std::string line;
   int code = 0;
@@ -130,9 +130,11 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   const auto first = match_command(words).first;
   console.set_chinese(wants_chinese(words, shell.defaults().chinese));
   console.set_ascii(locale_is_not_utf8());
-  if (first < words.size() && words[first] == "-")
-    return run_batch(shell, as_run(words, first), standard_text);
-  if (is_batch(words)) return run_batch(shell, words, standard_text);
+  const bool is_run_of_input = first < words.size() && words[first] == "-";
+  if (is_run_of_input || is_batch(words)) {
+    shell.end_interrupted_by_signal();
+    return run_batch(shell, is_run_of_input ? as_run(words, first) : words, standard_text);
+  }
   if (first < words.size() || asks_for_help(words)) return run_one(shell, words, console);
   auto settings = settings_for_lines(shell.defaults(), words);
   if (!settings) return shell.report_error(settings.error(), false);
@@ -161,6 +163,26 @@ int run_tab(const std::vector<std::string>& words, StandardConsole& console) {
   return 0;
 }
 
+/// To stderr, if that takes it: how the program ends does not depend on whether anybody can read why.
+void say(std::string_view text) noexcept {
+  while (!text.empty()) {
+    const auto taken = ::write(STDERR_FILENO, text.data(), text.size());
+    if (taken < 0 && errno == EINTR && !interrupted()) continue;
+    if (taken <= 0) return;
+    text.remove_prefix(static_cast<std::size_t>(taken));
+  }
+}
+
+void say_bug(std::string_view what) noexcept {
+  try {
+    say(fmt::format(
+        "error: servoctl failed: {}\n  hint: this is a bug; please report it with the command line\n",
+        printable(what)));
+  } catch (...) {
+    say(what);  // Memory may be what is missing.
+  }
+}
+
 int run(const std::vector<std::string>& words, StandardConsole& console) {
   if (!words.empty() && words.front() == kTabQuestion) return run_tab(words, console);
   Shell::Options options;
@@ -178,6 +200,7 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
   } catch (...) {
     // Memory that ran out, or a bug: what is energised is not left to itself.
     shell.let_go();
+    (void)shell.close(exit_code(Errc::bug));
     throw;
   }
 }
@@ -192,17 +215,17 @@ int run_program(const std::vector<std::string>& words) {
     console.finish();
     // A reader that has closed the pipe has seen enough.
     if (console.write_error() == 0 || console.write_error() == EPIPE) return code;
-    fmt::print(stderr,
-               "error: cannot write the output ({}); the output is incomplete\n"
-               "  hint: what the command did on the bus stays done\n",
-               std::strerror(console.write_error()));
+    say(
+        fmt::format("error: cannot write the output ({}); the output is incomplete\n"
+                    "  hint: what the command did on the bus stays done\n",
+                    std::strerror(console.write_error())));
     return code != 0 ? code : exit_code(Errc::file);
   } catch (const std::exception& e) {
-    fmt::print(stderr,
-               "error: servoctl failed: {}\n  hint: this is a bug; please report it with the command line\n",
-               printable(e.what()));
-    return exit_code(Errc::bug);
+    say_bug(e.what());
+  } catch (...) {
+    say_bug("?");
   }
+  return exit_code(Errc::bug);
 }
 
 }  // namespace servoctl::cli

@@ -97,10 +97,12 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   }
   auto applied = apply_options(options_.defaults, parsed->arguments);
   if (!applied) return failed(applied.error(), std::move(settings), path);
+  if (parsed->command->all_by_default && !applied->nodes_typed) applied->nodes = "all";
   console_->set_quiet(applied->quiet);
   const ShownWait shown(*this);
   console_->set_verbose(applied->verbose);
   cabinet_told_ = false;
+  told_energised_.clear();
   auto out = perform_parsed(*parsed, *applied);
   // What is done behind the last line is done for it.
   if (stays_open_) console_->set_verbose(options_.defaults.verbose);
@@ -162,6 +164,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto opened = open(run.settings);
   if (!opened) return fail(opened.error());
   run.context.session = *opened;
+  run.energised_before = (*opened)->energised().nodes();
   if (const auto fits = check_registers(command, **opened, run.context.profile, run.settings.chinese); !fits)
     return fits;
   if (const auto possible = admit(command, arguments, **opened); !possible) return possible;
@@ -193,6 +196,10 @@ Result<void> Shell::prepare_nodes(Run& run) {
   const bool takes_all = run.command->to_all || reaches_silent || !includes(run.command->needs, Needs::node);
   if (nodes->front() == 0 && !takes_all) {
     nodes = session::nodes_present(*run.context.session);
+    // Where nobody can be looked for, what is known to be energised is still to be stopped.
+    const auto& energised = run.context.session->energised().nodes();
+    if (!nodes && run.command->way_out && !energised.empty())
+      nodes = std::vector(energised.begin(), energised.end());
     if (!nodes) return fail(nodes.error());
   }
   run.context.nodes = std::move(*nodes);
@@ -205,6 +212,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   hear_second_node(run);
   if (!result) errors.insert(errors.begin(), result.error());
   const bool is_lost = tell_lost_bus(run, met_loss);
+  if (!is_lost) tell_energised(run);
   tell_second_node(run);
   learn_from(run);
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
@@ -243,34 +251,6 @@ Result<std::unique_ptr<session::RingEnd>> Shell::open_ring_end(const Settings& s
 
 Result<std::unique_ptr<session::RegisterEnd>> Shell::open_register_end(const Settings& settings) {
   return bus_.open_register_end(settings);
-}
-
-/// A drive that stays energised only while servoctl is there is held until the user ends it.
-int Shell::hold() {
-  if (!bus_.must_go_on()) return 0;
-  console_->note("notice: process data go on, and the drive stays as it is: Ctrl-C ends it\n");
-  auto& session = *bus_.session();
-  while (!cancelled() && bus_.must_go_on()) {
-    const auto stepped = session.step(session.now() + std::chrono::milliseconds(250));
-    for (const auto& notice : take_notices(nullptr, false))
-      console_->note("notice: " + printable(notice) + "\n");
-    if (!stepped) return report_error(stepped.error(), false);
-  }
-  if (cancelled()) return 0;
-  return report_error(make_error(Errc::negative, "process data ended before you ended them",
-                                 "the lines above say why; `status` shows the state of the slave"),
-                      false);
-}
-
-int Shell::close(int code) {
-  hear_last_line();
-  if (bus_.holds_drives()) bus_.let_go();
-  bus_.close();
-  auto failure = bus_.take_trace_failure();
-  if (!failure) failure = std::exchange(incomplete_trace_, std::nullopt);
-  if (!failure) return code;
-  const auto mine = report_error(*failure, false);
-  return code == 0 ? mine : code;
 }
 
 int Shell::report_error(const Error& error, bool json, std::string_view command) {

@@ -111,6 +111,9 @@ class Shell {
   bool stays_open() const { return stays_open_; }
   /// Who reads the lines de-energises at the end what they enabled.
   void disable_at_end() { disables_at_end_ = true; }
+  /// Many lines are read: a signal that comes at any time until close() makes their exit code that of an
+  /// interruption. Of a single command only the command itself knows what Ctrl-C means.
+  void end_interrupted_by_signal() { signal_interrupts_ = true; }
   session::Protection::Hold protect(session::Care care) { return {&protection_, care}; }
   std::vector<std::uint8_t> energised_on(std::string_view url) const { return bus_.energised_on(url); }
   bool has_adapter(std::string_view adapter) const { return bus_.has_adapter(adapter); }
@@ -124,7 +127,8 @@ class Shell {
   /// Stops and disables the drives that were left energised, and says so: for a prompt that ends, and a file
   /// that stops in the middle. A single `enable` is left as it is.
   void let_go() { bus_.let_go(); }
-  /// Closes the bus. The exit code of the program: `code`, or that of what went wrong here.
+  /// Closes the bus. After a signal nothing that was energised here stays so. The exit code of the program:
+  /// `code`, or that of what went wrong here, such as a drive that could not be de-energised.
   int close(int code);
   /// Where a drive stays energised only as long as servoctl is there: waits until the user ends it. The exit
   /// code: not 0 when it ended otherwise.
@@ -173,6 +177,7 @@ class Shell {
     bool family_found = false;  ///< The line does not name it.
     bool changes = false;       ///< It writes to drives.
     bool family_guessed = false;
+    std::set<std::uint8_t> energised_before;
     std::string turn;  ///< As after --turn.
   };
   /// What a node is taken for.
@@ -203,6 +208,10 @@ class Shell {
   Result<void> prepare_nodes(Run& run);
   static Result<void> hold_serials(Run& run);
   void tell_trace_failure(Run& run);
+  /// What a drive is decides what is said of it, whichever command made it so.
+  void tell_energised(Run& run);
+  /// The same of those that an earlier line told, or none. Why one does not tell what it is.
+  std::optional<Errc> tell_energised_at_end();
   bool tell_lost_bus(Run& run, bool met);
   void hear_second_node(const Run& run);
   void tell_second_node(Run& run);
@@ -233,6 +242,9 @@ class Shell {
   BusHolder bus_;
   bool stays_open_ = false;
   bool disables_at_end_ = false;
+  bool signal_interrupts_ = false;
+  /// The opening() of their bus, and the nodes that the last line told to be energised.
+  std::set<std::pair<std::uint64_t, std::uint8_t>> told_energised_;
   std::vector<std::uint8_t> unheard_;  ///< Nodes of the last line, a second of which may still answer.
   std::set<std::pair<std::uint64_t, std::uint8_t>> written_;  ///< Nodes, and the opening() of their bus.
   std::optional<Error> incomplete_trace_;  ///< Told as a notice of a line; the exit code comes at the end.

@@ -203,7 +203,12 @@ std::vector<Outcome> Shell::perform_in_turn(const ParsedLine& line, std::vector<
     const bool of_bus = part.axes.empty() && several;
     out.push_back(perform_part(line, std::move(part)));
     if (of_bus) put_bus_into(out.back().result, out.back().settings.bus);
-    if (cancelled()) break;
+    // A way out goes as far as it can.
+    if (!cancelled() || line.command->way_out) continue;
+    if (out.size() < parts.size() && out.back().errors.empty())
+      out.back().errors.push_back(make_error(Errc::interrupted, "interrupted",
+                                             "it was done on the buses above, and not on the others"));
+    break;
   }
   return out;
 }

@@ -4,6 +4,7 @@
 
 #include "base/printable.hpp"
 #include "cli/shell.hpp"
+#include "motion/left_energised.hpp"
 #include "session/identify.hpp"
 #include "show/notice.hpp"
 
@@ -104,6 +105,19 @@ std::vector<std::string> Shell::take_written_to_both(session::Session& session) 
     return true;
   });
   return out;
+}
+
+void Shell::tell_energised(Run& run) {
+  auto* session = run.context.session;
+  if (session == nullptr || run.settings.dry_run) return;
+  auto nodes = session->energised().nodes();
+  for (const auto node : run.energised_before) nodes.erase(node);
+  // What a motion says of a drive that fell silent is that already.
+  for (const auto& error : run.context.errors)
+    if (error.node && error.code == Errc::timeout && run.command->effect == command::Effect::moves)
+      nodes.erase(*error.node);
+  motion::tell_left_energised(run.context, nodes);
+  for (const auto node : nodes) told_energised_.emplace(opening(*session), node);
 }
 
 /// The line was carried out; those that follow are too.

@@ -110,7 +110,8 @@ struct Command {
   /// Scripts call it again and again: alone in its process it waits 2 ms for a second node of the same
   /// number, others 20.
   bool brief = false;
-  bool goes_on = false;  ///< It shows what comes until it is ended: one bus and family at a time.
+  bool goes_on = false;         ///< It shows what comes until it is ended: one bus and family at a time.
+  bool all_by_default = false;  ///< Without -n in the line it is `-n all`, whatever is in use.
   /// The word or option that names a file it writes whole: a second bus or family would replace it.
   std::string_view one_file = {};
   bool joins = false;  ///< One run for all buses and families of a line: Context::others.

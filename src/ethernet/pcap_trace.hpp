@@ -38,11 +38,15 @@ class PcapPort final : public Port {
   bool has_link() const override { return inner_->has_link(); }
   std::vector<std::string> take_notices() override;
   void flush_trace() override { file_.flush(now()); }
+  void end_trace() override {
+    inner_.reset();
+    file_.end();
+  }
 
  private:
   void record(Direction direction, ByteSpan frame, TimePoint time);
 
-  can::TraceFile file_;  ///< Waits for its reader at the end, when the port is closed.
+  can::TraceFile file_;
   std::unique_ptr<Port> inner_;
   PcapForm form_;
   Duration clock_offset_;  ///< From the port's clock to the times in the file.

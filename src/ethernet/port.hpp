@@ -46,6 +46,8 @@ class Port {
   virtual std::vector<std::string> take_notices() { return {}; }
   /// Whatever is kept back for a file is written to it now.
   virtual void flush_trace() {}
+  /// As can::Bus::end_trace().
+  virtual void end_trace() {}
 };
 
 }  // namespace servoctl::ethernet

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "motion/power.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::motion {
 
@@ -21,21 +22,48 @@ std::string power_warning(std::uint8_t node, std::string_view why) {
   return fmt::format("NODE {} MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY: {}", node, why);
 }
 
-void tell_left_energised(show::Desk& desk) {
+namespace {
+
+/// Longest wait for a drive that was told to be energised a moment ago.
+constexpr Duration kPatience = std::chrono::milliseconds(100);
+constexpr Duration kPause = std::chrono::milliseconds(5);
+
+/// What the drive is in, once it is energised or the patience has ended. One that did not answer before is
+/// not asked again.
+Result<drive::DriveState> settled_state(show::Desk& desk, std::uint8_t node) {
+  auto& session = *desk.session;
+  for (const auto& error : desk.errors)
+    if (error.node == node && error.code == Errc::timeout) return fail(Errc::timeout, "it did not answer");
   const drive::Profile plain;
-  for (const auto node : std::set(desk.session->energised().nodes())) {
-    Power power(*desk.session, plain, node);
-    const auto state = power.state();
-    if (state && drive::is_energised(*state))
-      desk.notices.push_back(energised_notice(*desk.session, node));
-    else if (state && desk.session->energised().contains(node))
+  const auto end = session.now() + kPatience;
+  for (;;) {
+    auto state = Power(session, plain, node).state();
+    const bool may_come = state && !drive::is_energised(*state) && session.energised().contains(node);
+    if (!may_come || session.now() >= end || !pause(session, kPause)) return state;
+  }
+}
+
+}  // namespace
+
+void tell_left_energised(show::Desk& desk, const std::set<std::uint8_t>& nodes) {
+  auto& session = *desk.session;
+  const session::Deaf deaf(session);
+  for (const auto node : nodes) {
+    const auto state = settled_state(desk, node);
+    if (state && drive::is_energised(*state)) {
+      desk.notices.push_back(energised_notice(session, node));
+    } else if (state && session.energised().contains(node)) {
       desk.notices.push_back(fmt::format(
-          "node {} left \"operation enabled\" by itself ({}) and may restart by itself: 6040h may still hold "
-          "\"enable operation\"; `disable -n {}` clears it",
+          "node {} is in {}, and 6040h may still hold \"enable operation\": it may become energised by "
+          "itself; `disable -n {}` clears it",
           node, drive::name(*state), node));
-    else if (!state && state.error().code != Errc::sdo_abort)
-      desk.notices.push_back(
-          fmt::format("node {} MAY BE ENERGISED: state not known ({})", node, state.error().message));
+    } else if (!state && state.error().code != Errc::sdo_abort) {
+      auto error = state.error();
+      error.message =
+          fmt::format("node {} MAY BE ENERGISED: state not known ({})", node, state.error().message);
+      error.node = node;
+      desk.errors.push_back(std::move(error));
+    }
   }
 }
 

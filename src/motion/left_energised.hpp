@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 
 #include "show/desk.hpp"
@@ -17,9 +18,9 @@ std::string disabled_notice(std::uint8_t node);
 /// Of one whose power could not be taken away: what the user has to do, and why.
 std::string power_warning(std::uint8_t node, std::string_view why);
 
-/// Looks whether the drives that were energised through this session still are, and says so of each: in the
-/// notices, also where one does not tell.
-void tell_left_energised(show::Desk& desk);
+/// Looks whether these drives, which were told to be energised through this session, are, and says so of each
+/// in the notices; of one that does not tell in the errors. Does not hear Ctrl-C.
+void tell_left_energised(show::Desk& desk, const std::set<std::uint8_t>& nodes);
 
 /// Stops and disables them, for a command that ends before its time; the notices say so, and what did not
 /// succeed is in `desk.errors`. Does not hear Ctrl-C.

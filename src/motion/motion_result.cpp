@@ -92,7 +92,9 @@ Error unverified(std::uint8_t node, const MotionReport& done) {
   const std::string hint = "do not approach the machine before its supply is off";
   if (done.outcome) return drive_error(Errc::negative, node, unverified_text(done.end, done.watchdog), hint);
   const auto& cause = done.outcome.error();
-  auto error = make_error(cause.code, unverified_text(done.end, done.watchdog, cause.message, node), hint);
+  // One that is merely interrupted leaves nothing energised.
+  const auto code = cause.code == Errc::interrupted ? Errc::negative : cause.code;
+  auto error = make_error(code, unverified_text(done.end, done.watchdog, cause.message, node), hint);
   error.node = node;
   return error;
 }

@@ -43,7 +43,10 @@ Result<DriveState> Power::state() {
   const auto word = statusword();
   if (!word) return fail(word.error());
   const auto out = drive::decode_state(*word);
-  if (!drive::is_energised(out) && session_->energised().contains(node_) && !says_go())
+  auto& network = session_->network();
+  if (drive::is_energised(out))
+    network.end_expecting(node_);
+  else if (session_->energised().contains(node_) && !network.expects_power(node_) && !says_go())
     session_->energised().erase(node_);
   return out;
 }

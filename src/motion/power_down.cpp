@@ -248,7 +248,10 @@ std::vector<PowerDownResult> take_down(session::Session& session, std::vector<Po
   for (const auto& drive : drives) {
     out.push_back(drive->result());
     const bool seen = out.back().statusword && !drive::is_energised(out.back().state());
-    if (out.back().written && seen && out.back().outcome) session.energised().erase(drive->node());
+    if (out.back().written && seen && out.back().outcome) {
+      session.energised().erase(drive->node());
+      session.network().end_expecting(drive->node());
+    }
     if (out.back().is_without_power() && !drive->plan().keeps_exchange)
       end_exchange(session, drive->plan(), out.back());
   }

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -71,12 +72,19 @@ class CanNetwork final : public Network {
   /// What the controller reported, and what the bus has to say.
   std::vector<std::string> take_notices() override;
   void flush_trace() override { bus_->flush_trace(); }
+  Result<void> close() override {
+    bus_->end_trace();
+    return {};
+  }
   /// A heartbeat says that a node is stopped; of one that sends none nobody knows.
   std::string_view state_title() const override { return "NMT state"; }
   std::string state_order(NodeState state) const override;
   std::string silence_hint(std::uint8_t node) const override;
   std::string state_command(std::uint8_t node, NodeState state) const override;
   CanNetwork* can() override { return this; }
+  void expect_power(std::uint8_t node) override { powered_by_pdo_.insert(node); }
+  void end_expecting(std::uint8_t node) override { powered_by_pdo_.erase(node); }
+  bool expects_power(std::uint8_t node) const override { return powered_by_pdo_.count(node) > 0; }
 
   /// Sends a frame of any kind. Errors as can::Bus::send().
   Result<void> send(const can::Frame& frame);
@@ -190,6 +198,7 @@ class CanNetwork final : public Network {
   std::optional<can::Frame> frame_;
   /// Asking the clock costs a system call on some machines.
   TimePoint stepped_at_{};
+  std::set<std::uint8_t> powered_by_pdo_;
 };
 
 }  // namespace servoctl::session

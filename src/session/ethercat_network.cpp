@@ -56,10 +56,13 @@ std::string_view EtherCatNetwork::state_word(NodeState state) const {
 EtherCatNetwork::EtherCatNetwork(std::unique_ptr<ethernet::Port> port, std::string url)
     : url_(std::move(url)), wire_(std::move(port), *this) {}
 
-EtherCatNetwork::~EtherCatNetwork() {
+Result<void> EtherCatNetwork::close() {
   wire_.set_cancelled({});
+  Result<void> out;
   for (const auto* node : known_)
-    if (node->raised) (void)end_exchange(node->number);
+    if (auto ended = end_exchange(node->number); !ended && out) out = std::move(ended);
+  wire_.port().end_trace();
+  return out;
 }
 
 EtherCatNode& EtherCatNetwork::of(std::uint8_t node) {

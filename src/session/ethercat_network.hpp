@@ -23,12 +23,11 @@ namespace servoctl::session {
 ///
 /// Objects are reached through the mailbox of a slave, which is taken from INIT to PRE-OP for that. In an
 /// exchange (SAFE-OP, OP) what the process image carries is written and read there. What servoctl has taken
-/// above PRE-OP goes back when the network goes.
+/// above PRE-OP goes back with close().
 class EtherCatNetwork final : public Network, private EtherCatTenant {
  public:
   /// `url` stands in messages.
   EtherCatNetwork(std::unique_ptr<ethernet::Port> port, std::string url);
-  ~EtherCatNetwork() override;
 
   TimePoint now() const override { return wire_.now(); }
   Result<bool> step(TimePoint deadline) override;
@@ -58,6 +57,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
                                                 std::span<const ObjectAddress> objects) override;
   std::vector<std::string> take_notices() override;
   void flush_trace() override { wire_.port().flush_trace(); }
+  Result<void> close() override;
   std::string_view state_title() const override { return "AL state"; }
   bool is_ring() const override { return true; }
   std::string_view state_word(NodeState state) const override;

@@ -222,6 +222,17 @@ class Network {
   /// What only a gateway of CiA 309-3 has; null elsewhere.
   virtual GatewayNetwork* gateway() { return nullptr; }
 
+  /// Ends what servoctl keeps up on it, and its trace. The last call, while everybody who is told of orders,
+  /// notices or the trace is still there: a destructor sends nothing and tells nobody. Does not hear the
+  /// question whether it is cancelled. An error of the first node that could not be put back; all are tried.
+  virtual Result<void> close() { return {}; }
+
+  /// What energises the node later was sent, such as a PDO that waits for SYNC: that it is seen at rest proves
+  /// nothing until it was seen energised, or was disabled. Nothing where every write is answered.
+  virtual void expect_power(std::uint8_t) {}
+  virtual void end_expecting(std::uint8_t) {}
+  virtual bool expects_power(std::uint8_t) const { return false; }
+
  protected:
   std::function<void(std::uint8_t node, std::string_view order)> ordered_;
 };

@@ -23,6 +23,8 @@ class RingEnd {
   /// Lets simulated drives live on the wire until it is cancelled. Errc::bus when the wire is lost; a
   /// master that goes, or a cable that is unplugged, is none.
   Result<void> serve(sim::EscCell& cell);
+  /// The last call: as ethernet::Port::end_trace().
+  void close() { port_->end_trace(); }
 
  private:
   Result<void> send_back(sim::EscRing& ring);

@@ -95,6 +95,8 @@ class Session {
   Result<bool> step(TimePoint deadline, const std::function<bool()>& concerns);
   /// When what step() took in last arrived.
   TimePoint received_at() const { return received_at_; }
+  /// Network::close(): the last call before it is destroyed, made by who opened it.
+  Result<void> close() { return network_->close(); }
   /// Takes in whatever has arrived, without waiting.
   Result<void> listen();
 

@@ -102,7 +102,9 @@ Result<std::vector<Finding>> ask_over(const std::string& name, const DoctorOptio
   session::Options how;
   how.cancelled = options.cancelled;
   session::Session session(std::move(*network), name, std::move(how));
-  return ask_all(session);
+  auto out = ask_all(session);
+  (void)session.close();
+  return out;
 }
 
 LinkFacts facts_of(const std::string& name, const can::LinkState& state) {

@@ -21,7 +21,11 @@ FAMILIES = {"gsd600": ["--turn", "131072"], "da200": ["--turn", "10000"], "ts": 
 SIGNALS = ["INT", "TERM", "HUP", "QUIT", "TSTP", "USR1"]
 # These end what is running, and not a prompt.
 INTERRUPTS = {"INT", "TSTP"}
-PLACES = ["jog", "move", "batch", "pipe", "prompt"]
+PLACES = ["jog", "move", "batch", "last line", "last line of input", "pipe", "last line of a pipe", "prompt"]
+# Lines that end as interrupted ones, whatever they were about.
+LINES = {"batch", "last line", "last line of input", "pipe", "last line of a pipe"}
+LAST_LINE = "watch statusword --every 2ms --for 60s\n"
+FORMS = [[], [], ["--json"], ["-o", "jsonl"]]
 OUTPUTS = ["read", "stalled pipe", "held terminal", "stalled trace"]
 failures = []
 number = 0
@@ -54,11 +58,14 @@ class Run:
         self.terminal = None
         command = {"jog": ["jog", "60rpm", "--for", "20s", *turn, "-y"],
                    "move": ["move", "20rev", "--relative", "--speed", "60rpm", *turn, "-y"]}.get(place, [])
-        if place == "batch":
+        if place in ("batch", "last line"):
             script = os.path.join(folder, "batch")
             with open(script, "w") as file:
-                file.write("enable -y\n" + "status\nparam list\n" * 40 + "wait 60s\n")
-            command = ["run", script]
+                file.write("enable -y\n")
+                file.write("status\nobjects\n" * 40 + "wait 60s\n" if place == "batch" else LAST_LINE)
+            command = ["run", script, *rng.choice(FORMS)]
+        if place == "last line of input":
+            command = ["run", "-", *rng.choice(FORMS)]
         if output == "stalled trace":
             command = ["--trace", self.fifo(folder), *command]
         stdin = stdout = subprocess.DEVNULL
@@ -73,13 +80,15 @@ class Run:
             reader, stdout = os.pipe()
             fcntl.fcntl(stdout, fcntl.F_SETPIPE_SZ, 4096)
             self.held += [reader, stdout]
-        if place == "pipe":
+        if place in ("pipe", "last line of a pipe", "last line of input"):
             stdin = subprocess.PIPE
         self.process = subprocess.Popen([servoctl, *command], env=env, stdin=stdin, stdout=stdout, stderr=stdout,
                                         start_new_session=True)
-        if place == "pipe":
-            self.process.stdin.write(b"enable -y\n")
+        if place in ("pipe", "last line of a pipe", "last line of input"):
+            self.process.stdin.write(b"enable -y\n" + (LAST_LINE.encode() if place != "pipe" else b""))
             self.process.stdin.flush()
+        if place in ("last line of a pipe", "last line of input"):
+            self.process.stdin.close()
         if place == "prompt":
             time.sleep(0.3)
             self.read()
@@ -110,7 +119,7 @@ class Run:
     def close(self):
         for descriptor in self.held + ([self.terminal] if self.terminal is not None else []):
             os.close(descriptor)
-        if self.process.stdin:
+        if self.process.stdin and not self.process.stdin.closed:
             self.process.stdin.close()
 
 
@@ -121,7 +130,7 @@ def attack(env, family, folder):
     what = f"{number}: {family}, {place}, {output}, {' '.join(names)} {gap * 1000:g} ms apart after {delay * 1000:.0f} ms"
     run = Run(env, place, output, FAMILIES[family], folder)
     reads = output != "held terminal"
-    if place in ("batch", "pipe", "prompt") and not until(lambda: energised(env), 60):
+    if place in LINES | {"prompt"} and not until(lambda: energised(env), 60):
         failures.append(f"{what}: the drive is not enabled, nothing was tried")
     elif place in ("jog", "move"):
         time.sleep(rng.uniform(0, 2.5))
@@ -163,7 +172,10 @@ def attack(env, family, folder):
     if run.process.poll() is None:
         failures.append(f"{what}: it does not end")
         run.process.kill()
-    run.process.wait()
+    code = run.process.wait()
+    # Two of the keyboard end a process that holds no drive at once; its code is that of an interruption as well.
+    if place in LINES and code != 130:
+        failures.append(f"{what}: the exit code is {code}")
     run.close()
     if energised(env):
         failures.append(f"{what}: the drive is energised afterwards")

@@ -35,7 +35,7 @@ TEST_F(Trace, HasALineForEveryFrameSentAndReceived) {
   EXPECT_EQ(bus->receive(kStart + seconds(2)).value(), parsed("20000040#0000000000000000"));
   ASSERT_TRUE(bus->send(parsed("701#R")));
   ASSERT_TRUE(bus->send(parsed("00000123#")));
-  bus.reset();
+  bus->end_trace();
   EXPECT_EQ(written(),
             "(1736412345.123456) can0 601#4041600000000000\n"
             "(1736412345.124356) can0 581#4341600037020000\n"
@@ -47,7 +47,7 @@ TEST_F(Trace, HasALineForEveryFrameSentAndReceived) {
 TEST_F(Trace, OfASimulatedBusCountsFromItsZero) {
   auto bus = trace(TimePoint{});
   ASSERT_TRUE(bus->send(parsed("000#8100")));
-  bus.reset();
+  bus->end_trace();
   EXPECT_EQ(written(), "(0000000000.000000) can0 000#8100\n");
 }
 
@@ -55,7 +55,7 @@ TEST_F(Trace, OfARealBusShowsTheTimeOfDay) {
   auto bus = trace(TimePoint{seconds(3)}, TraceClock::wall);
   const auto before = std::chrono::system_clock::now().time_since_epoch();
   ASSERT_TRUE(bus->send(parsed("000#8100")));
-  bus.reset();
+  bus->end_trace();
   const auto line = parse_log_line(written());
   ASSERT_TRUE(line);
   EXPECT_LT(std::chrono::abs(line->time - before), seconds(60));
@@ -146,7 +146,7 @@ TEST_F(Trace, ThatCannotBeWrittenSaysSoOnceAndLeavesTheBusUsable) {
     EXPECT_TRUE(bus->send(parsed("080#")));
     EXPECT_TRUE(bus->receive(kStart + i * milliseconds(100)));
   }
-  bus.reset();
+  bus->end_trace();
   EXPECT_EQ(told.size(), 1U);
 }
 
@@ -161,7 +161,7 @@ TEST_F(Trace, WhoseLastFramesCannotBeWrittenSaysSoAtItsEnd) {
     EXPECT_TRUE(told.empty());
     if (flushed) bus->flush_trace();
     EXPECT_EQ(told.size(), flushed ? 1U : 0U);
-    bus.reset();
+    bus->end_trace();
     EXPECT_EQ(told.size(), 1U);
   }
 }
@@ -230,11 +230,23 @@ TEST_F(TracePipe, IsNotWaitedForAtTheEndAndSaysWhatIsMissing) {
   constexpr std::size_t kFrames = 1'000;
   for (std::size_t i = 0; i < kFrames; ++i) ASSERT_TRUE(bus->send(parsed("080#")));
   const auto begin = std::chrono::steady_clock::now();
-  bus.reset();
+  bus->end_trace();
   EXPECT_LT(std::chrono::steady_clock::now() - begin, seconds(5));
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told.front().code, Errc::file);
   EXPECT_EQ(std::stoul(told.front().message) + read_lines(), kFrames) << told.front().message;
+}
+
+TEST_F(TracePipe, ThatIsDestroyedTellsNobody) {
+  open_reader();
+  std::vector<Error> told;
+  auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), file_, "can0", TraceClock::bus,
+                      [&](const Error& error) { told.push_back(error); })
+                 .value();
+  for (int i = 0; i < 1'000; ++i) ASSERT_TRUE(bus->send(parsed("080#")));
+  bus.reset();
+  EXPECT_TRUE(told.empty()) << "who is told may be gone already";
+  EXPECT_GT(read_lines(), 0U) << "what is taken at once is written";
 }
 
 TEST_F(TracePipe, LeavesTheBusBeforeItWaitsForItsReader) {
@@ -247,7 +259,7 @@ TEST_F(TracePipe, LeavesTheBusBeforeItWaitsForItsReader) {
                left_when_told = left;
              }).value();
   for (int i = 0; i < 1'000; ++i) ASSERT_TRUE(bus->send(parsed("080#")));
-  bus.reset();
+  bus->end_trace();
   EXPECT_TRUE(left_when_told) << "meanwhile nobody takes what others send to it";
 }
 

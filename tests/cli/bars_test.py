@@ -72,6 +72,7 @@ LINES = {
     "enable": ("enable" + SILENT, ELAPSED),
     "disable": ("disable" + SILENT, ELAPSED),
     "quick-stop": ("quick-stop" + SILENT, ELAPSED),
+    "stop": ("stop" + SILENT, ELAPSED),
     "mode": ("mode" + SILENT, ELAPSED),
     "jog": ("jog 60rpm --for 2s" + TURN, LEFT),
     "move": ("move 2rev --relative --speed 60rpm" + TURN, LEFT),

@@ -24,7 +24,7 @@ class BatchTest : public testing::Test {
     o.clock = sim::SimBus::Clock::virtual_time;
     o.defaults.bus = "sim:gsd600@1,gsd600@2";
     o.defaults.drive = "gsd600";
-    o.cancelled = [this] { return questions_left-- <= 0; };
+    o.cancelled = [this] { return signalled() || questions_left-- <= 0; };
     return o;
   }
 
@@ -39,6 +39,18 @@ class BatchTest : public testing::Test {
   bool told(std::string_view text) const { return console.err_text.find(text) != std::string::npos; }
   bool shown(std::string_view text) const { return console.out_text.find(text) != std::string::npos; }
 
+  /// A signal comes while this text is shown, and is not forgotten.
+  bool signalled() const {
+    return !signal_at.empty() && (console.out_text + console.err_text).find(signal_at) != std::string::npos;
+  }
+  bool energised() {
+    signal_at.clear();
+    console.out_text.clear();
+    EXPECT_EQ(run("status -n 1 --json"), 0) << console.err_text;
+    return shown(R"("energised":true)");
+  }
+
+  std::string signal_at;
   int questions_left = 1'000'000;  ///< How often the run may ask whether it is cancelled.
   RecordingConsole console;
   Shell shell;
@@ -66,6 +78,39 @@ TEST_F(BatchTest, ThatRunsToItsEndLeavesDrivesAsItSays) {
   EXPECT_FALSE(told("was left energised; it is stopped"));
   EXPECT_EQ(run("use 1\nstatus\nexpect .energised == true\ndisable\nread 0x5FFF"), 5) << console.err_text;
   EXPECT_FALSE(told("was left energised")) << "it was disabled by the file itself";
+}
+
+TEST_F(BatchTest, ASignalInTheLastLineEndsTheRunAsInterruptedAndLeavesNoDriveEnergised) {
+  for (const auto* options : {"", "-ojsonl"}) {
+    SCOPED_TRACE(options);
+    signal_at = "Statusword";
+    const Words more = *options == '\0' ? Words() : Words{options};
+    EXPECT_EQ(run("use 1\nenable -y\nwatch statusword --for 30s", more), 130)
+        << console.out_text << console.err_text;
+    EXPECT_TRUE(told("notice: node 1 was still energised; it has been stopped and disabled\n"))
+        << console.err_text;
+    EXPECT_FALSE(energised());
+  }
+}
+
+TEST_F(BatchTest, ASignalWhileTheSummaryIsShownIsRememberedAsWell) {
+  signal_at = "lines done";
+  EXPECT_EQ(run("use 1\nenable -y\nread 0x6041"), 130) << console.err_text;
+  EXPECT_FALSE(energised());
+}
+
+TEST_F(BatchTest, ASignalInTheLastLineSaysSoOfThatLine) {
+  signal_at = "0x6061";
+  EXPECT_EQ(run("use 1\nread 0x6041\nread 0x6061"), 130) << console.err_text;
+  EXPECT_TRUE(
+      told("error: standard input:3: interrupted\n  hint: all lines were run; the signal came in the last "
+           "one\n"))
+      << console.err_text;
+}
+
+TEST_F(BatchTest, ASignalBehindAFailureLeavesItsExitCode) {
+  signal_at = "error: ";
+  EXPECT_EQ(run("use 1\nread 0x5FFF\nread 0x6061"), 5) << console.err_text;
 }
 
 TEST_F(BatchTest, EndsAtTheFirstFailureWithFileLineAndItsExitCode) {

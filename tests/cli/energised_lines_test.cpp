@@ -145,6 +145,96 @@ TEST_F(EnergisedLines, AParameterThatEnergisesIsAskedForAndTold) {
   EXPECT_FALSE(says("its motor may get power")) << all();
 }
 
+constexpr std::string_view kNotice =
+    "notice: node 1 IS ENERGISED and not supervised; `disable -n 1` de-energises it\n";
+
+TEST_F(EnergisedLines, ADriveThatIsEnergisedIsToldWhicheverCommandDidIt) {
+  const std::vector<std::vector<std::string>> ways{
+      {"enable -n 1 --yes"},
+      {"write 0x6040 6 -n 1", "write 0x6040 7 -n 1", "write 0x6040 15 -n 1 --yes"},
+      {"nmt start -n 1", "pdo send RPDO1 6 -n 1 --yes", "pdo send RPDO1 7 -n 1 --yes",
+       "pdo send RPDO1 15 -n 1 --yes"}};
+  for (const auto& way : ways) {
+    SCOPED_TRACE(way.back());
+    open("sim:gsd600@1", "gsd600");
+    for (const auto& line : way) {
+      EXPECT_FALSE(says("ENERGISED")) << all();
+      ASSERT_EQ(run(line), 0) << all();
+    }
+    EXPECT_TRUE(says(kNotice)) << all();
+    run("read 0x6041 -n 1");
+    EXPECT_FALSE(says("ENERGISED")) << "once: " << all();
+  }
+}
+
+/// Seen at rest it is nothing but not yet energised.
+TEST_F(EnergisedLines, ADriveThatObeysAtTheNextSyncIsNotForgottenBeforeIt) {
+  open("sim:gsd600@1", "gsd600");
+  for (const auto* line :
+       {"nmt start -n 1", "write 0x6040 6 -n 1", "write 0x6040 7 -n 1", "pdo disable RPDO1 -n 1 --yes",
+        "write 0x1400:2 1 -n 1", "pdo enable RPDO1 -n 1 --yes"})
+    ASSERT_EQ(run(line), 0) << line << all();
+  ASSERT_EQ(run("pdo send RPDO1 15 -n 1 --yes"), 0) << all();
+  EXPECT_TRUE(says("may become energised")) << all();
+  ASSERT_EQ(run("status -n 1"), 0) << all();
+  ASSERT_EQ(run("sync once --yes"), 0) << all();
+  ASSERT_TRUE(energised(1));
+  shell->let_go();
+  EXPECT_TRUE(says("node 1 was still energised; it has been stopped and disabled")) << all();
+  EXPECT_FALSE(energised(1));
+}
+
+TEST_F(EnergisedLines, WhatIsLeftEnergisedIsToldWhenTheLinesEnd) {
+  ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
+  ASSERT_EQ(run("read 0x6041 -n 1"), 0) << all();
+  EXPECT_EQ(shell->close(0), 0);
+  EXPECT_TRUE(says(kNotice)) << all();
+  open("sim:gsd600@1", "gsd600");
+  ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
+  console.out_text.clear();
+  console.err_text.clear();
+  EXPECT_EQ(shell->close(0), 0);
+  EXPECT_FALSE(says("ENERGISED")) << "the last line told it: " << all();
+}
+
+TEST_F(EnergisedLines, ADriveThatCannotBeLetGoReachesTheExitCode) {
+  for (const int code : {0, 130, 5}) {
+    open("sim:gsd600@1?silent=2s", "gsd600");
+    ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
+    (void)run("watch statusword -n 1 --for 3s");
+    shell->let_go();
+    EXPECT_TRUE(says("NODE 1 MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY")) << all();
+    const auto end = shell->close(code);
+    EXPECT_TRUE(code == 5 ? end == 5 : end != 0 && end != 130) << code << " became " << end << all();
+  }
+}
+
+TEST_F(EnergisedLines, ASignalBehindTheLastLineLeavesNothingEnergised) {
+  ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
+  looks_left = 0;
+  EXPECT_EQ(shell->close(0), 130);
+  EXPECT_TRUE(says("node 1 was still energised; it has been stopped and disabled")) << all();
+}
+
+TEST_F(EnergisedLines, StopTakesTheWayDownOfEverythingWhateverIsInUse) {
+  for (const auto& [bus, family] :
+       {std::pair("sim:gsd600@1,gsd600@2", "gsd600"), std::pair("coe:sim:sv2@1,sv2@2", "sv2")}) {
+    SCOPED_TRACE(bus);
+    open(bus, family);
+    ASSERT_EQ(run("enable -n 1,2 --yes"), 0) << all();
+    ASSERT_EQ(run("use 1"), 0) << all();
+    EXPECT_EQ(run("stop"), 0) << all();
+    EXPECT_TRUE(console.questions.empty());
+    EXPECT_FALSE(energised(1));
+    EXPECT_FALSE(energised(2));
+    ASSERT_EQ(run("enable -n 1,2 --yes"), 0) << all();
+    EXPECT_EQ(run("stop -n 1"), 0) << all();
+    EXPECT_FALSE(energised(1));
+    EXPECT_TRUE(energised(2)) << "a line with -n of its own is for that";
+    EXPECT_EQ(run("stop"), 0) << all();
+  }
+}
+
 TEST_F(EnergisedLines, OneThatEnergisesFromTheNextStartOnSaysSo) {
   EXPECT_EQ(run("param set Pn0600=1 -n 1"), 8) << all();
   EXPECT_TRUE(says("After a restart of the drive this may energise the motor without the controlword."))

@@ -62,6 +62,7 @@ const std::map<std::string, std::string> kSamples{
     {"enable", "enable -n 1 -y"},
     {"disable", "disable -n 1,2"},
     {"quick-stop", "quick-stop -n 1,2"},
+    {"stop", "stop"},
     {"mode", "mode 1 -n 1"},
     {"jog", "jog 30rpm --for 1s --turn 10000 -n 1 -y"},
     {"move", "move 90deg --relative --speed 30rpm --turn 10000 -n 1 -y"},

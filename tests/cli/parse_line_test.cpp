@@ -42,6 +42,29 @@ TEST(ParseLine, SaysWhichCommandMayBeMeant) {
   }
 }
 
+TEST(ParseLine, SaysWhatAWordOfOtherToolsMeansBeforeWhatItIsSpelledLike) {
+  const std::pair<Words, std::string> lines[] = {
+      {{"reset"}, "'reset' is not a command: `fault reset` resets a fault, `nmt reset` restarts"},
+      {{"start"}, "'start' is not a command: `nmt start` makes a node operational, `enable` energises"},
+      {{"off"}, "'off' is not a command: `disable` de-energises a drive"},
+      {{"list"}, "'list' is not a command: `scan` lists the drives"},
+      {{"get", "Pn0202"}, "'get' is not a command: `read` reads an object, `param get`"},
+      {{"set", "Pn0202=5"}, "'set' is not a command: `write` writes an object, `param set`"},
+      {{"connect", "can0"},
+       "'connect' is not a command: there is no connection to make: name the bus with -b"},
+      {{"slaves"}, "'slaves' is not a command: `scan` finds"},
+      {{"upload", "0x6041"}, "'upload' is not a command: `read` reads one object (SDO upload)"},
+      {{"download"}, "'download' is not a command: `write` writes one object (SDO download)"},
+      {{"dump"}, "'dump' is not a command: `backup` saves all values"},
+      {{"ERRORS"}, "'ERRORS' is not a command: `fault show` shows the faults"},
+      {{"sdo", "read", "0x6041"}, "'sdo' is not a command: `read` reads an object (SDO upload)"}};
+  for (const auto& [words, said] : lines) {
+    const auto line = parse_line(words);
+    ASSERT_FALSE(line);
+    EXPECT_EQ((line.error().message + ": " + line.error().hint).substr(0, said.size()), said);
+  }
+}
+
 TEST(ParseLine, LeavesValuesAsTheyAreWritten) {
   const auto line = parse_line({"write", "6040h", "-010"});
   ASSERT_TRUE(line) << line.error().message;

@@ -116,6 +116,7 @@ TEST_F(RingStateTest, ADryRunChangesNothing) {
   using Line = std::pair<std::string_view, std::vector<std::pair<std::string_view, std::string>>>;
   const std::vector<Line> lines = {{"disable", {}},
                                    {"quick-stop", {}},
+                                   {"stop", {}},
                                    {"write", {{"object", "0x6060"}, {"value", "3"}}},
                                    {"mode", {{"mode", "pv"}}},
                                    {"enable", {}},

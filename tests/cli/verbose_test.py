@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -20,6 +21,7 @@ home = tempfile.mkdtemp()
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
 env.update(LANG="C.UTF-8", XDG_STATE_HOME=os.path.join(home, "state"), HOME=home)
 BUSES = (("sim:gsd600@1", "gsd600", "CAN"), ("coe:sim:sv2@1", "sv2", "CANopen over EtherCAT"), ("modbus:sim:ts@1", "ts", "Modbus"))
+CLOSING = r"^detail: sent to node \d: the request for (SAFE-)?OP$[\s\S]*^detail: sent to node \d: the request for PRE-OP$"
 CAN = ("-b", "sim:gsd600@1", "-n")
 CABINET = ('[bus.main]\nurl = "sim:gsd600@1,gsd600@2"\n[bus.ring]\nurl = "coe:sim:sv2@1"\n'
            '[axis.lift]\nbus = "main"\nnode = 1\nfamily = "gsd600"\n[axis.feed]\nbus = "ring"\nnode = 1\nfamily = "sv2"\n')
@@ -79,6 +81,30 @@ def what_is_sent_and_decided():
     is_told("the environment", r"^detail: family gsd600: set before this line, or by \$SERVOCTL_DRIVE; ",
             run("read", "statusword", *CAN, "1", "-v", SERVOCTL_DRIVE="gsd600")[1])
     is_told("the recording", r"^detail: every frame is written to t\.log$", run("read", "0x1000", *CAN, "1", "-v", "--trace", "t.log")[1])
+
+
+def with_a_slave_in_op():
+    """Closing the bus sends orders, which are told: everybody who tells them has to be there still."""
+    ring = ("-b", "coe:sim:sv2@1,sv2@2", "-d", "sv2", "-v")
+    for lines in ("state op -n 1", "state op -n 1,2\nstatus -n 1", "state safeop -n 2", "enable -n 1 -y", "state op -n 1\nread 0x5999 -n 1"):
+        done = run(*ring, given=lines + "\n")
+        check(f"'{lines}' ends well ({done[2]}): {done[1]}", done[2] == (5 if "0x5999" in lines else 0))
+        is_told("the order of closing", CLOSING, done[1])
+    with open(os.path.join(home, "ring"), "w", encoding="utf-8") as file:
+        file.write("state op -n 1\nread 0x6041 -n 1\n")
+    check("a file", run("run", "ring", *ring)[2] == 0)
+    check("with a trace", run("run", "ring", *ring, "--trace", "ring.pcap")[2] == 0)
+    os.symlink("/dev/full", os.path.join(home, "full.pcap"))
+    check("with a trace that fails", run(*ring, "--trace", "full.pcap", given="state op -n 1\n")[2] == 7)
+    for line in (("state", "op", "-n", "1"), ("enable", "-n", "1", "-y")):
+        held = subprocess.Popen([servoctl, *line, *ring], env=env, cwd=home, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        told = ""
+        for text in held.stderr:
+            told += text
+            if "Ctrl-C ends it" in text:
+                held.send_signal(signal.SIGINT)
+        check(f"{line} is held and ended: {told}", held.wait(60) == 0)
+        is_told(f"{line}: the order of closing", CLOSING, told)
 
 
 def of_axes():
@@ -156,7 +182,7 @@ def over_a_gateway():
 try:
     for one in BUSES:
         on_a_bus(*one, ("info",) if one[2] == "Modbus" else ("status",))
-    for test in (what_is_read_and_written, what_is_sent_and_decided, of_axes, in_other_forms, with_quiet, at_the_prompt, over_a_gateway):
+    for test in (what_is_read_and_written, what_is_sent_and_decided, with_a_slave_in_op, of_axes, in_other_forms, with_quiet, at_the_prompt, over_a_gateway):
         test()
     for failure in pty_terminal.failures:
         check(failure, False)

@@ -63,6 +63,7 @@ const std::map<std::string, std::string, std::less<>> kLines{
     {"scan", "scan"},
     {"scope", "scope 0x6041 --map --for 20ms"},
     {"status", "status"},
+    {"stop", "stop -n 1"},
     {"store", "store"},
     {"sync once", "sync once"},
     {"sync start", "sync start 10ms --count 1"},
@@ -96,7 +97,7 @@ const std::set<std::string_view> kByFile{"cabinet init",   "cabinet show", "cabi
 /// Refused on a read already: the answer would make sense for the family alone.
 const std::set<std::string_view> kAnswers{"backup",  "diff",       "info",   "report",  "scope",
                                           "test io", "units show", "verify", "watchdog"};
-const std::set<std::string_view> kWaysOut{"disable", "quick-stop"};
+const std::set<std::string_view> kWaysOut{"disable", "quick-stop", "stop"};
 
 TEST_F(WrongFamily, TheTableHasEveryCommand) {
   for (const auto* command : command::registry())

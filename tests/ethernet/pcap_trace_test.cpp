@@ -85,7 +85,7 @@ TEST_F(PcapTest, TheClassicFormHasAHeadOf24BytesAndOneOf16InFrontOfEachFrame) {
   inner_->coming.emplace_back(inner_->now() + milliseconds(2), frame_of(2));
   ASSERT_TRUE(port_->send(frame_of(1)));
   ASSERT_TRUE(*port_->receive(inner_->now() + seconds(1)));
-  port_.reset();
+  port_->end_trace();
   EXPECT_EQ(written(),
             "D4 C3 B2 A1 02 00 04 00 00 00 00 00 00 00 00 00 FF FF 00 00 01 00 00 00 "
             // 1736412345.123000, 60 of 60 bytes
@@ -100,7 +100,7 @@ TEST_F(PcapTest, TheNewerFormTellsInterfaceAndDirection) {
   inner_->coming.emplace_back(inner_->now(), frame_of(2, 61));
   ASSERT_TRUE(port_->send(frame_of(1)));
   ASSERT_TRUE(*port_->receive(inner_->now() + seconds(1)));
-  port_.reset();
+  port_->end_trace();
   const std::string section =
       "0A 0D 0D 0A 1C 00 00 00 4D 3C 2B 1A 01 00 00 00 FF FF FF FF FF FF FF FF 1C 00 00 00 ";
   const std::string interface =
@@ -144,7 +144,7 @@ TEST_F(PcapTest, AFullDiskIsToldOnceAndThePortGoesOn) {
   }
   ASSERT_EQ(failures_.size(), 1U);
   EXPECT_EQ(failures_.front(), "cannot write the trace " + file_.string() + ": No space left on device");
-  port_.reset();
+  port_->end_trace();
   EXPECT_EQ(failures_.size(), 1U);
 }
 
@@ -157,7 +157,7 @@ TEST_F(PcapTest, FramesThatAReaderDoesNotTakeAreCountedAndTheHeadIsNone) {
   ASSERT_EQ(notices.size(), 1U);
   const auto left_out = std::stoi(notices.front());
   EXPECT_GT(left_out, 1000);
-  port_.reset();
+  port_->end_trace();
   ASSERT_EQ(failures_.size(), 1U);
   // What the pipe has room for is a head and whole frames, but for the last.
   Bytes taken(std::size_t{1} << 20U);

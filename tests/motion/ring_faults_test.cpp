@@ -186,6 +186,7 @@ class RingFaults : public RingTrouble, public testing::WithParamInterface<RingFa
   }
   /// Whatever became of the wire: the program has ended, and the watchdogs have had their time.
   void expect_all_is_over() {
+    (void)session_->close();
     session_.reset();
     for (const auto end = port_->now() + 300ms; port_->now() < end;)
       if (!port_->receive(end)) break;

@@ -52,6 +52,13 @@ for command in "${commands[@]}"; do
   # shellcheck disable=SC2086
   "$servoctl" $command --dry-run >"$work/out" 2>&1 || fail "$command does not begin: $(cat "$work/out")"
 done
+# Lines that leave the drive enabled when they end: a signal in the last of them takes that back, also while nobody reads what it
+# shows. Such a drive has no watchdog: nothing is promised after SIGKILL.
+printf 'enable --yes\nwatch statusword --every 2ms --for 20s\n' >"$work/lines"
+motions=${#commands[@]}
+commands+=("run $work/lines" "run $work/lines --json" "run $work/lines -o jsonl")
+mkfifo "$work/unread"
+exec 9<>"$work/unread"
 # Runs a program as a shell with job control does: in a process group of its own, without which SIGTSTP does not stop it, and
 # with the signals that whoever started this test may have made it deaf to. The shell has no job control itself: it leaves the
 # loop that it is in when a job is stopped.
@@ -73,20 +80,30 @@ tried=0
 # One kill, of this number.
 kill_once() {
   tried=$((tried + 1))
-  command=${commands[RANDOM % ${#commands[@]}]}
   signal=${signals[$1 % ${#signals[@]}]}
+  kinds=${#commands[@]}
+  [ "$signal" = KILL ] && kinds=$motions
+  command=${commands[RANDOM % kinds]}
   delay=$((500 + RANDOM % 2000))  # It listens for a second before it begins.
+  out=$work/out
+  [ $((RANDOM % 2)) -eq 0 ] && out=$work/unread
   # shellcheck disable=SC2086
-  in_group "$servoctl" $command --yes >"$work/out" 2>"$work/err" &
+  in_group "$servoctl" $command --yes >"$out" 2>"$work/err" &
   pid=$!
   sleep "$((delay / 1000)).$(printf %03d $((delay % 1000)))"
-  case $(state) in true*) moving=$((moving + 1)) ;; esac
+  was_on=false
+  case $(state) in true*) moving=$((moving + 1)); was_on=true ;; esac
   case $signal in
     INTINT) kill -INT "$pid" 2>/dev/null; kill -INT "$pid" 2>/dev/null; sleep 0.02; kill -INT "$pid" 2>/dev/null ;;
     *) kill "-$signal" "$pid" 2>/dev/null ;;
   esac
   [ "$signal" = TSTP ] && end_or_stop "$pid"
   wait "$pid" 2>/dev/null
+  code=$?
+  case $was_on-$signal-$command in
+    true-KILL-*) ;;
+    true-*-run*) [ "$code" -eq 130 ] || { fail "$command, $signal after $delay ms: the exit code is $code"; cat "$work/err"; } ;;
+  esac
   [ "$signal" = KILL ] && sleep 0.6
   after=$(state)
   case $after in

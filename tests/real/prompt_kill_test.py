@@ -86,7 +86,7 @@ class Prompt:
         self.fd = None
 
 
-LINES = ["", "watch 0x6041 -n 1 --for 5s", "status -n 1,2", "monitor --for 5s", "read 0x6041 0x6064 -n 1,2"]
+LINES = ["", "run {batch}", "watch 0x6041 -n 1 --for 5s", "status -n 1,2", "monitor --for 5s", "read 0x6041 0x6064 -n 1,2"]
 ENDS = {
     "INT INT": lambda p: p.signal(signal.SIGINT, signal.SIGINT),
     "INT": lambda p: p.signal(signal.SIGINT),
@@ -114,6 +114,7 @@ def kill_once(number):
         prompt.say(f"enable -n {node} -d {family}" + (" --turn 10000" if family in ("da200", "ts") else ""), "ENERGISED while servoctl runs")
     if not (energised(1) and energised(2)):
         fail(f"{what}: the drives are not enabled")
+    line = line.format(batch=batch.name)
     os.write(prompt.fd, line.encode() + b"\r" if line else b"half a li")
     time.sleep(chance.uniform(0, 0.3))
     ENDS[how](prompt)
@@ -136,6 +137,10 @@ def kill_once(number):
 
 
 said = tempfile.TemporaryFile("w+")
+# Its last line goes on until a signal ends it.
+batch = tempfile.NamedTemporaryFile("w", suffix=".servoctl")
+batch.write("status -n 1,2\nwatch 0x6041 -n 1 --for 5s\n")
+batch.flush()
 
 
 def serve():

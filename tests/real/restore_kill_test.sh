@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Kills restores with `kill -9` at random times; each is then gone on with or undone, and the drive has to hold all of the one or
-# all of the other. COUNT of them are cut off while they write.
+# Kills restores with `kill -9` at random times, or ends them by SIGTERM, alone and as the last line of a file, while what they show is
+# read or not; each is then gone on with or undone, and the drive has to hold all of the one or all of the other. COUNT of them are cut
+# off while they write.
 # usage: restore_kill_test.sh SERVOCTL BUS COUNT [SEED]
 set -u
 servoctl=$1 count=$3
@@ -26,17 +27,29 @@ begin=${EPOCHREALTIME/./}
 "$servoctl" restore good.json --yes >/dev/null 2>&1 || fail "an undisturbed restore does not work"
 lasts=$((${EPOCHREALTIME/./} - begin))
 
+echo 'restore good.json --yes' >lines
+mkfifo unread
+exec 9<>unread
 resumed=0 undone=0 untouched=0
 while [ $((resumed + undone)) -lt "$count" ]; do
   i=$((i + 1))
   [ $i -le $((count * 20)) ] || fail "kills do not meet restores that write"
   set_others || fail "cannot change values"
   rm -f good.json.before-*
-  "$servoctl" restore good.json --yes >/dev/null 2>&1 &
+  line=(restore good.json --yes)
+  [ $((RANDOM % 2)) -eq 0 ] && line=(run lines)
+  out=/dev/null
+  [ $((RANDOM % 2)) -eq 0 ] && out=unread
+  signal=KILL
+  [ $((RANDOM % 2)) -eq 0 ] && signal=TERM
+  "$servoctl" "${line[@]}" >"$out" 2>/dev/null &
   restore=$!
   sleep "$(printf '0.%06d' $((lasts / 3 + RANDOM * 33 % (lasts * 2 / 3 + 1))))"
-  kill -9 $restore 2>/dev/null
+  ended=true
+  kill -$signal $restore 2>/dev/null && ended=false
   wait $restore 2>/dev/null
+  code=$?
+  case $ended-$signal-${line[0]}-$code in false-TERM-run-130 | false-TERM-restore-* | false-KILL-* | true-*) ;; *) fail "${line[*]}, $signal: the exit code is $code" ;; esac
   if [ ! -e good.json.before-node-1.json.journal ]; then
     holds good.json || holds other.json || fail "values of both, and no journal"
     untouched=$((untouched + 1))

@@ -29,6 +29,11 @@ wait_for || { cat "$work/sim"; echo "FAILED: the simulated drive does not answer
 
 commands=("jog 60rpm --for 2s" "jog -120rpm --turns 3" "move 2rev --relative --speed 120rpm" "home 17 --speed 60rpm --search 6rpm"
   "torque 2% --limit 60rpm --for 2s" "enable")
+# Lines that end: a signal in the last of them is remembered, also while nobody reads what it shows.
+printf 'enable --yes\nwatch statusword --every 2ms --for 20s\n' >"$work/lines"
+commands+=("run $work/lines" "run $work/lines --json")
+mkfifo "$work/unread"
+exec 9<>"$work/unread"
 signals=(INT TERM HUP QUIT TSTP USR1 KILL INTINT)
 before=$(held)
 RANDOM=${SEED:-4711}
@@ -52,8 +57,11 @@ kill_once() {
   command=${commands[RANDOM % ${#commands[@]}]}
   signal=${signals[$1 % ${#signals[@]}]}
   delay=$((20 + RANDOM % 2500))
+  out=$work/out
+  : >"$work/out"
+  case $command-$((RANDOM % 2)) in run*-0) out=$work/unread ;; esac
   # shellcheck disable=SC2086
-  in_group "$servoctl" $command --yes >"$work/out" 2>"$work/err" &
+  in_group "$servoctl" $command --yes >"$out" 2>"$work/err" &
   pid=$!
   sleep "$((delay / 1000)).$(printf %03d $((delay % 1000)))"
   grep -q ' rpm\|ENERGISED' "$work/out" "$work/err" && kill -0 "$pid" 2>/dev/null && moving=$((moving + 1))
@@ -65,6 +73,12 @@ kill_once() {
   # What ends by itself is waited for; USR1 is none of its business.
   [ "$signal" = USR1 ] && { sleep 0.2; kill -INT "$pid" 2>/dev/null; }
   wait "$pid" 2>/dev/null
+  code=$?
+  # The one place where Ctrl-C is how the user ends it is a single `enable`.
+  case $signal-$command in
+    KILL-*) ;;
+    *-run*) [ "$code" -ge 128 ] || { fail "$command, $signal after $delay ms: the exit code is $code"; cat "$work/err"; } ;;
+  esac
   [ "$signal" = KILL ] && sleep 0.2
   after=$(state)
   case $signal-$after in

@@ -121,13 +121,55 @@ TEST_F(EtherCatTest, ASlaveGoesToOpAndBack) {
   EXPECT_FALSE(network().must_go_on());
 }
 
-TEST_F(EtherCatTest, TheEndOfASessionTakesItsSlavesOutOfOp) {
+TEST_F(EtherCatTest, ClosingTakesSlavesOutOfOpAndTellsEachOrder) {
+  open("sv2@1,sv2@2");
+  std::vector<std::string> told;
+  Options options;
+  options.ordered = [&](const Session& session, std::uint8_t node, std::string_view order) {
+    told.push_back(session.url() + " " + std::to_string(node) + " " + std::string(order));
+  };
+  session_ = connect(std::move(options));
+  for (const std::uint8_t node : std::initializer_list<std::uint8_t>{1, 2}) {
+    network().learn(node, rules());
+    ASSERT_TRUE(network().request_state(node, NodeState::operational));
+    ASSERT_EQ(slave(node - 1U).state(), sim::EscState::op);
+  }
+  told.clear();
+  EXPECT_TRUE(session_->close());
+  for (const std::uint8_t node : std::initializer_list<std::uint8_t>{1, 2}) {
+    EXPECT_EQ(slave(node - 1U).state(), sim::EscState::pre_op);
+    EXPECT_EQ(
+        std::count(told.begin(), told.end(), "coe:sim " + std::to_string(node) + " the request for PRE-OP"),
+        1);
+  }
+}
+
+/// Whoever is told may be gone before the session is.
+TEST_F(EtherCatTest, ASessionThatIsDestroyedSendsNothingAndTellsNobody) {
   open("sv2@1");
+  int told = 0;
+  Options options;
+  options.ordered = [&](const Session&, std::uint8_t, std::string_view) { ++told; };
+  session_ = connect(std::move(options));
   network().learn(1, rules());
   ASSERT_TRUE(network().request_state(1, NodeState::operational));
-  ASSERT_EQ(slave().state(), sim::EscState::op);
+  const auto before = told;
+  const auto sent = ring().sent();
   session_.reset();
-  EXPECT_EQ(slave().state(), sim::EscState::pre_op);
+  EXPECT_EQ(told, before);
+  EXPECT_EQ(ring().sent(), sent);
+}
+
+TEST_F(EtherCatTest, ASlaveThatDoesNotGoBackIsAnErrorOfClosing) {
+  open("sv2@1,sv2@2");
+  for (const std::uint8_t node : std::initializer_list<std::uint8_t>{1, 2}) {
+    network().learn(node, rules());
+    ASSERT_TRUE(network().request_state(node, NodeState::operational));
+  }
+  ring().cut_cable(1);
+  const auto closed = session_->close();
+  ASSERT_FALSE(closed);
+  EXPECT_EQ(slave(0).state(), sim::EscState::pre_op) << "the other one is put back all the same";
 }
 
 TEST_F(EtherCatTest, OutputsArePresetFromTheDriveBeforeOp) {

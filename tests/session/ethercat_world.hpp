@@ -44,10 +44,10 @@ class EtherCatTest : public testing::Test {
     session_ = connect();
   }
   /// One more program on the same wire; they must not wait at the same time.
-  std::unique_ptr<Session> connect() {
+  std::unique_ptr<Session> connect(Options options = {}) {
     return std::make_unique<Session>(
         std::make_unique<EtherCatNetwork>(std::make_unique<test::BorrowedPort>(*port_), "coe:sim"), "coe:sim",
-        Options{});
+        std::move(options));
   }
   EtherCatNetwork& network() { return *session_->network().ethercat(); }
   sim::EscRing& ring() { return port_->cell().ring; }

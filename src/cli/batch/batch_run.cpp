@@ -3,6 +3,7 @@
 #include <poll.h>
 
 #include <fmt/format.h>
+#include <utility>
 
 #include "base/printable.hpp"
 #include "base/signal_wait.hpp"
@@ -23,24 +24,36 @@ class BatchRun {
 
   /// False when the run ends here.
   bool take(const Step& step) {
-    if (shell_->cancelled()) {
-      shell_->let_go();
-      return interrupt(step);
-    }
+    last_step_ = &step;
+    if (shell_->cancelled()) return false;
     auto outcome = perform(step);
     const bool ok = outcome.errors.empty();
     // Ctrl-C ends the run whatever holds for failures.
     const bool stopped = !ok && outcome.errors.front().code == Errc::interrupted;
     ++(ok ? done_ : failed_);
     if (!ok && (!first_error_ || stopped)) first_error_ = in_line(step, outcome.errors.front());
-    const bool goes_on = !stopped && (ok || step.goes_on);
+    ended_ = stopped || !(ok || step.goes_on);
     // Whoever does not read what went wrong does not hold it up.
-    if (!goes_on) shell_->let_go();
+    if (ended_ || shell_->cancelled()) let_go();
     tell(step, std::move(outcome));
-    return !is_exit(step.words) && goes_on;
+    return !is_exit(step.words) && !ended_;
+  }
+
+  /// A signal that came at any time ends the run as an interrupted one, also where no line is left.
+  void hear_signal() {
+    if (ended_ || last_step_ == nullptr || !shell_->cancelled()) return;
+    ended_ = true;
+    let_go();
+    first_error_ = in_line(*last_step_, interrupted_error());
+    if (!settings_.json) show_remarks(shell_->console(), failed(*first_error_, settings_));
   }
 
   bool has_failed() const { return first_error_.has_value(); }
+
+  /// What cannot be let go is told once.
+  void let_go() {
+    if (!std::exchange(has_let_go_, true)) shell_->let_go();
+  }
 
   int finish() {
     const auto left = count_ - done_ - failed_;
@@ -64,14 +77,10 @@ class BatchRun {
     return at_line(*file_, step.line, in_round(step.round, std::move(error)));
   }
 
-  bool interrupt(const Step& step) {
-    first_error_ = in_line(step, interrupted_error());
-    if (!settings_.json) show_remarks(shell_->console(), failed(*first_error_, settings_));
-    return false;
-  }
-
-  static Error interrupted_error() {
-    return make_error(Errc::interrupted, "interrupted", "earlier lines were run, later ones were not");
+  Error interrupted_error() const {
+    return make_error(Errc::interrupted, "interrupted",
+                      done_ + failed_ < count_ ? "earlier lines were run, later ones were not"
+                                               : "all lines were run; the signal came in the last one");
   }
 
   Outcome perform(const Step& step) {
@@ -183,6 +192,9 @@ class BatchRun {
   std::size_t count_;
   std::size_t done_ = 0;
   std::size_t failed_ = 0;
+  const Step* last_step_ = nullptr;  ///< Of those that were taken.
+  bool ended_ = false;               ///< By an error.
+  bool has_let_go_ = false;
   Value last_;
   std::optional<Error> first_error_;
   report::List records_;
@@ -196,10 +208,15 @@ int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file
   BatchRun run(shell, steps, file);
   for (const auto& step : steps)
     if (!run.take(step)) break;
+  run.hear_signal();
   // Nobody goes on with what the file began.
-  if (run.has_failed()) shell.let_go();
-  const int code = run.finish();
+  if (run.has_failed()) run.let_go();
+  int code = run.finish();
   if (!produced) shell.stop_sync();
+  if (code == 0 && shell.cancelled()) {
+    run.let_go();
+    code = exit_code(Errc::interrupted);
+  }
   shell.stay_open(stayed);
   return code;
 }

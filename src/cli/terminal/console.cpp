@@ -190,11 +190,13 @@ bool StandardConsole::is_behind() {
   return out_.is_waiting() || err_.is_waiting();
 }
 
+void StandardConsole::wait_for_reader() {
+  for (auto* output : {&out_, &err_}) show(*output, {});
+}
+
 void StandardConsole::finish() {
-  for (auto* output : {&out_, &err_}) {
-    show(*output, {});
-    output->give_up();
-  }
+  wait_for_reader();
+  for (auto* output : {&out_, &err_}) output->give_up();
 }
 
 bool StandardConsole::shows_progress() const {

@@ -89,6 +89,8 @@ class Console {
   /// While it is set, who reads is waited for not at all: what is written waits for them. A person types a
   /// line, and buses are served meanwhile.
   virtual void set_waits_for_none(bool none) { (void)none; }
+  /// Waits for who reads as long as it would for the next text.
+  virtual void wait_for_reader() {}
   /// Passes on what waits for who reads; whether something still does.
   virtual bool is_behind() { return false; }
   /// How many texts of out() were left out since the last call, because their reader was too slow.
@@ -156,6 +158,7 @@ class StandardConsole final : public Console {
   bool output_lost() const override { return write_error() != 0; }
   void set_care(session::Care care) override;
   void set_waits_for_none(bool none) override;
+  void wait_for_reader() override;
   bool is_behind() override;
   std::size_t take_left_out() override { return out_.take_left_out(); }
   std::size_t take_untold() override { return err_.take_left_out(); }
