@@ -17,7 +17,9 @@ inline int recoveries_until_open(Bus& bus, const Frame& frame) {
     const auto begin = bus.now();
     back = bus.recover(begin + std::chrono::milliseconds(20));
     EXPECT_LT(bus.now() - begin, std::chrono::milliseconds(250)) << "it ends by its deadline";
-    if (!back) EXPECT_FALSE(bus.send(frame)) << "it is not open yet";
+    if (!back) {
+      EXPECT_FALSE(bus.send(frame)) << "it is not open yet";
+    }
   }
   EXPECT_TRUE(back);
   return tries;

@@ -11,26 +11,26 @@ namespace {
 using namespace std::chrono_literals;
 using canopen::SlowServer;
 
-constexpr ObjectAddress kMode{0x6060, 0};
-constexpr ObjectAddress kStatus{0x6041, 0};
+constexpr ObjectAddress kLateMode{0x6060, 0};
+constexpr ObjectAddress kLateStatus{0x6041, 0};
 
 TEST_F(CoeClientTest, ALateAnswerIsNoneToTheNextReadOfTheObject) {
-  upload(kMode, {"> 00204060600000000000", "+ 500ms", "> 00208060600000000405"});
+  upload(kLateMode, {"> 00204060600000000000", "+ 500ms", "> 00208060600000000405"});
   EXPECT_EQ(result().error().code, Errc::timeout);
-  upload(kMode, {"> 00204000100000000000", "< 00304F60600001000000", "< 00304300100092010200",
+  upload(kLateMode, {"> 00204000100000000000", "< 00304F60600001000000", "< 00304300100092010200",
                  "> 00204060600000000000", "< 00304F60600003000000"});
   EXPECT_EQ(data(), "03");
 }
 
 TEST_F(CoeClientTest, AConfirmationThatMayBeOfAnEarlierWriteLeavesOpenWhetherTheWriteWasDone) {
-  download(kMode, {3}, {"> 00202F60600003000000", "+ 500ms", "> 00208060600000000405"});
+  download(kLateMode, {3}, {"> 00202F60600003000000", "+ 500ms", "> 00208060600000000405"});
   EXPECT_EQ(result().error().code, Errc::timeout);
-  download(kMode, {4}, {"> 00202F60600004000000", "< 00306060600000000000"});
+  download(kLateMode, {4}, {"> 00202F60600004000000", "< 00306060600000000000"});
   EXPECT_EQ(result().error().code, Errc::timeout);
 }
 
 TEST_F(CoeClientTest, WhatWasHeardIsPartOfTheMessageAboutSilence) {
-  upload(kStatus, {"> 00204041600000000000", "< 00308000000000000206", "+ 500ms", "> 00208041600000000405"});
+  upload(kLateStatus, {"> 00204041600000000000", "< 00308000000000000206", "+ 500ms", "> 00208041600000000405"});
   expect_failure(
       Errc::protocol,
       "node 2, object 0x6041:0: no answer within 500 ms; it aborted with 0x06020000 and named object "
@@ -69,22 +69,22 @@ RC_GTEST_PROP(CoeClient, NoMixtureOfLateAndDoubledAnswersTellsAnUntruth, ()) {
                                  *rc::gen::weightedElement<int>({{6, 1}, {2, 2}, {1, 0}}),
                                  *rc::gen::weightedElement<bool>({{7, false}, {1, true}})};
   };
-  server.set(kMode, 0, now);
+  server.set(kLateMode, 0, now);
   for (int step = *rc::gen::inRange(2, 12); step > 0; --step) {
     while (!server.coming.empty() && server.coming.front().first <= now)
       hear_one(client, server, server.coming.front().first);
     const auto value = *rc::gen::arbitrary<std::uint8_t>();
-    if (*rc::gen::inRange(0, 4) == 0) server.set(kMode, value, now);
+    if (*rc::gen::inRange(0, 4) == 0) server.set(kLateMode, value, now);
     const auto begun = now;
     if (*rc::gen::arbitrary<bool>()) {
-      client.start_upload(kMode, now);
+      client.start_upload(kLateMode, now);
       const auto end = run(client, server, now);
-      if (end) RC_ASSERT(server.had(kMode, end->front(), begun));
+      if (end) RC_ASSERT(server.had(kLateMode, end->front(), begun));
       continue;
     }
-    const auto& all = server.values[kMode];
+    const auto& all = server.values[kLateMode];
     const auto before = static_cast<std::ptrdiff_t>(all.size());
-    client.start_download(kMode, {value}, now);
+    client.start_download(kLateMode, {value}, now);
     const auto end = run(client, server, now);
     const auto writes_it = [&](const auto& write) { return write.value == value; };
     if (end) RC_ASSERT(std::any_of(all.begin(), all.end(), writes_it));

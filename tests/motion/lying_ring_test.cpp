@@ -168,14 +168,14 @@ TEST_F(LyingRing, ASecondSignalMakesAGentleStopAQuickOne) {
   }
 }
 
-int from_environment(const char* name, int otherwise) {
+int number_from_environment(const char* name, int otherwise) {
   const char* text = std::getenv(name);
   return text != nullptr ? std::atoi(text) : otherwise;
 }
 
 TEST_F(LyingRing, NeverLeavesADriveEnergisedOrClaimsWhatWasNotSeen) {
-  const int count = from_environment("LYING_SLAVES", 60);
-  const auto seed = static_cast<unsigned>(from_environment("LYING_SEED", 1));
+  const int count = number_from_environment("LYING_SLAVES", 60);
+  const auto seed = static_cast<unsigned>(number_from_environment("LYING_SEED", 1));
   for (int i = 0; i < count; ++i) {
     std::mt19937 random(seed * 100'003U + static_cast<unsigned>(i));
     const auto pick = [&](std::size_t most) { return static_cast<std::size_t>(random() % most); };

@@ -178,10 +178,6 @@ TEST_F(EtherCatTest, SignalsAreHeldBackUntilASlaveIsOutOfOp) {
   Protection protection([&](Care worst) { told.emplace_back(worst, slave().state()); });
   session_options_.protection = &protection;
   open("sv2@1");
-  int told = 0;
-  Options options;
-  options.ordered = [&](const Session&, std::uint8_t, std::string_view) { ++told; };
-  session_ = connect(std::move(options));
   network().learn(1, rules());
   ASSERT_TRUE(network().request_state(1, NodeState::operational));
   pass(milliseconds(100));
@@ -206,6 +202,10 @@ TEST_F(EtherCatTest, ADriveWithAClockOf32BitsIsRunWithSync0) {
 
 TEST_F(EtherCatTest, AWrongWorkingCounterIsNamed) {
   open("sv2@1");
+  int told = 0;
+  Options options;
+  options.ordered = [&](const Session&, std::uint8_t, std::string_view) { ++told; };
+  session_ = connect(std::move(options));
   network().learn(1, rules());
   ASSERT_TRUE(network().request_state(1, NodeState::operational));
   slave().faults().withholds_inputs = true;

@@ -13,8 +13,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr ObjectAddress kSpeed{0x2033, 0};
-constexpr ObjectAddress kTorque{0x2095, 0};
+constexpr ObjectAddress kLateSpeed{0x2033, 0};
+constexpr ObjectAddress kLateTorque{0x2095, 0};
 
 /// A unit that does at once what it is asked, and answers as late and as often as a test wants; answers do
 /// not overtake each other.
@@ -79,23 +79,23 @@ struct SlowUnit {
 TEST(ModbusLate, AnAnswerThatIsLaterThanTheSecondWaitIsNotTheValueOfTheNextRegister) {
   SlowUnit unit(0);
   unit.next = [&] { return std::pair{Duration(milliseconds(unit.script.sent.size() == 1 ? 215 : 5)), 1}; };
-  EXPECT_EQ(unit.session->upload(1, kSpeed).error().code, Errc::timeout);
-  EXPECT_EQ(unit.session->upload(1, kTorque), (Bytes{149, 0}));
+  EXPECT_EQ(unit.session->upload(1, kLateSpeed).error().code, Errc::timeout);
+  EXPECT_EQ(unit.session->upload(1, kLateTorque), (Bytes{149, 0}));
   EXPECT_EQ(unit.script.sent.size(), 3U) << "a read of two registers stands between them";
 }
 
 TEST(ModbusLate, ALateAnswerIsOneToAFurtherTryOfItsRead) {
   SlowUnit unit(1);
   unit.next = [] { return std::pair{Duration(milliseconds(170)), 1}; };
-  EXPECT_EQ(unit.session->upload(1, kSpeed), (Bytes{1, 0}));
+  EXPECT_EQ(unit.session->upload(1, kLateSpeed), (Bytes{1, 0}));
   EXPECT_EQ(unit.script.sent.size(), 1U) << "it came before it was asked again";
 }
 
 TEST(ModbusLate, ALateAnswerIsPartOfTheMessageAboutSilence) {
   SlowUnit unit(0);
   unit.next = [] { return std::pair{Duration(milliseconds(170)), 1}; };
-  EXPECT_FALSE(unit.session->upload(1, kSpeed));
-  const auto end = unit.session->upload(1, kTorque);
+  EXPECT_FALSE(unit.session->upload(1, kLateSpeed));
+  const auto end = unit.session->upload(1, kLateTorque);
   ASSERT_FALSE(end);
   EXPECT_NE(end.error().message.find("; it answered an earlier request after 0.2 s"), std::string::npos)
       << end.error().message;
@@ -106,7 +106,7 @@ TEST(ModbusLate, ALineThatIsNeverSilentIsNotWaitedForWithoutEnd) {
   SlowUnit unit(0);
   for (int i = 0; i < 4000; ++i)
     unit.script.coming.emplace_back(unit.script.now + Duration(1000) * i, Bytes{0x55});
-  EXPECT_FALSE(unit.session->upload(1, kSpeed));
+  EXPECT_FALSE(unit.session->upload(1, kLateSpeed));
 }
 
 RC_GTEST_PROP(Modbus, NoMixtureOfLateAndDoubledAnswersTellsAnUntruth, ()) {
@@ -118,7 +118,7 @@ RC_GTEST_PROP(Modbus, NoMixtureOfLateAndDoubledAnswersTellsAnUntruth, ()) {
         *rc::gen::weightedElement<int>({{7, 1}, {2, 2}, {1, 0}})};
   };
   for (int step = *rc::gen::inRange(2, 12); step > 0; --step) {
-    const auto object = *rc::gen::element(kSpeed, kTorque);
+    const auto object = *rc::gen::element(kLateSpeed, kLateTorque);
     const auto at = static_cast<std::uint16_t>(object.index - 0x2000);
     const auto value = *rc::gen::arbitrary<std::uint8_t>();
     if (*rc::gen::inRange(0, 4) == 0) unit.set(at, value);
