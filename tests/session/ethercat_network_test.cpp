@@ -182,6 +182,7 @@ TEST_F(EtherCatTest, SignalsAreHeldBackUntilASlaveIsOutOfOp) {
   ASSERT_TRUE(network().request_state(1, NodeState::operational));
   pass(milliseconds(100));
   EXPECT_EQ(protection.worst(), Care::unsettled);
+  EXPECT_TRUE(session_->close());
   session_.reset();
   const std::vector<std::pair<Care, sim::EscState>> expected{{Care::unsettled, sim::EscState::pre_op},
                                                              {Care::none, sim::EscState::pre_op}};
