@@ -84,6 +84,7 @@ class DialogueRun {
     for (;;) {
       if (auto sent = channel.objects->on_time(session_->received_at()); !sent) return sent;
       if (auto result = channel.objects->take_result()) {
+        if (is_doubtful(channel, *result)) *result = Bytes{};
         if (*result) lost_in_a_row_ = 0;
         tell(channel, *result);
         channel.dialogue->on_answer(std::move(*result), session_->now());
@@ -100,6 +101,13 @@ class DialogueRun {
       if (step.request) start(channel, std::move(*step.request));
       channel.pause = step.pause;
     }
+  }
+
+  /// The drive has acknowledged this write, or an earlier one of the same object: it is not silent, and what
+  /// is read next shows what it did.
+  bool is_doubtful(const Lane& channel, const Result<Bytes>& result) const {
+    return !result && result.error().code == Errc::timeout && channel.request.data &&
+           session_->now() < channel.begun + session_->options().timeout;
   }
 
   void tell(const Lane& channel, const Result<Bytes>& result) const {

@@ -147,11 +147,13 @@ void MotionGuard::put_back(const Changed& changed) {
       fmt::format("object {} could not be restored to {}", to_string(changed.object), to_hex(changed.before));
   const bool none_chosen = changed.object == objects::kModeOfOperation && load_le(changed.before) == 0;
   if (none_chosen && !done && done.error().code == Errc::sdo_abort) return keep_mode();
-  if (!done) {
+  // A write whose answer is lost, or may be that to an earlier one, may have been done.
+  const bool unknown = !done && done.error().code == Errc::timeout;
+  const auto now_holds = done || unknown ? session_->upload(node_, changed.object) : Result<Bytes>(Bytes{});
+  if (!done && !(unknown && now_holds && *now_holds == changed.before)) {
     lost_ = lost_ || is_lost(done.error());
     return note(what, done.error());
   }
-  const auto now_holds = session_->upload(node_, changed.object);
   if (now_holds && *now_holds == changed.before) return;
   if (now_holds && none_chosen) return keep_mode();
   if (!now_holds && now_holds.error().code == Errc::sdo_abort)

@@ -86,7 +86,7 @@ TEST_F(MeasuredTruth, ASpeedThatIsNeverToldEndsATorque) {
 TEST_F(MeasuredTruth, AGapInTheLooksEndsTheMotion) {
   at_sample(20, [&] { bench.wait(4s); });
   const auto done = bench.jog(jog_for("60rpm", 2s));
-  expect_ended(done, "was not looked at for 4");
+  expect_ended(done, "was not looked at for 1.");
 }
 
 TEST_F(MeasuredTruth, AModeThatIsLeftEndsTheMotion) {
@@ -169,6 +169,7 @@ class StuckAttained : public testing::Test {
       if (frame.id == 0x581 && load_le(std::span(frame.data).subspan(1, 2)) == 0x6041)
         frame.data[5] = static_cast<std::uint8_t>(frame.data[5] | 0x14U);
     };
+    bench.obey_switches();
   }
   MotionBench bench{"gsd600", 131072};
 };

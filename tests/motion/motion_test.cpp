@@ -194,7 +194,8 @@ TEST_P(MotionOfFamily, CancelledAtAnyPointLeavesNothingBehind) {
     }
     EXPECT_TRUE(done.end.verified || !done.begun) << point;
     EXPECT_FALSE(own.energised()) << point;
-    EXPECT_EQ(own.changed(), std::vector<std::string>{}) << point;
+    EXPECT_EQ(own.changed(), std::vector<std::string>{})
+        << point << (done.end.left.empty() ? "" : ": " + done.end.left.front());
   }
 }
 

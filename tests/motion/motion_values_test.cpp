@@ -107,6 +107,7 @@ TEST_P(ValuesOfFamily, ASpeedBetweenTwoStepsIsToldOrRefused) {
 TEST_P(ValuesOfFamily, HomingByNoMethodOrWithoutSpeedIsRefusedWithTheWayOut) {
   if (!bench.profile().rules.motion.homing) return;
   bench.obey_switches();
+  bench.bus->frames.clear();
   auto home = home_by("0");
   auto done = bench.home(home);
   expect_refused(done, "method 0");

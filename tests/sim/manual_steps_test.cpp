@@ -42,6 +42,7 @@ class ManualSteps : public DrivenTest {
 
 TEST_F(ManualSteps, OfTheGsd600AreReachedInTheirOrder) {
   boot("gsd600");
+  obey_switches();
   write({0x6081, 0}, "100000");
   write({0x6083, 0}, "1000000");
   write({0x60FF, 0}, "100000");
@@ -81,6 +82,7 @@ TEST_F(ManualSteps, OfTheTsAreReachedInTheirOrder) {
 
 TEST_F(ManualSteps, OfTheSv2AreReachedInTheirOrder) {
   boot("sv2");
+  obey_switches();
   write({0x6081, 0}, "10000");
   play("pp", 1, 1063, 1071, "20000");
   play("pp", 1, 1085, 1089, "20000");
@@ -91,6 +93,7 @@ class HomingBits : public ManualSteps {
  protected:
   void home(const std::string& family, unsigned running, unsigned done) {
     boot(family);
+    obey_switches();
     enable("6");
     write({0x6040, 0}, "31");
     EXPECT_EQ(status() & 0x1400U, running);

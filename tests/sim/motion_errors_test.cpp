@@ -48,6 +48,7 @@ TEST_F(InMotion, OfTheSv2ProfilePositionIsToldAsPrinted) {
 
 TEST_F(InMotion, OfTheSv2HomingIsToldAsPrinted) {
   boot("sv2");
+  obey_switches();
   enable("6");
   control("31");
   expect_row("hm", 1220, "5");

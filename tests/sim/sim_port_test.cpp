@@ -72,7 +72,7 @@ TEST(EscCell, WhatIsWrongInTheTextIsTold) {
   EXPECT_EQ(refused("sv2@0").message, "'0' is not a node-ID (1..127)");
   EXPECT_EQ(
       refused("sv2@1?colour=blue").message,
-      "'colour' is not an option of a simulated ring: use state, fault, counts, sii, delay, silent, lose, "
+      "'colour' is not an option of a simulated ring: use state, fault, counts, panel, sii, delay, silent, lose, "
       "short, mailbox, emergency, fall, free-run, clock, lie, lie-after, lie-for, power or cut");
   EXPECT_EQ(refused("sv2@1?delay=20").message.substr(0, 7), "delay: ");
   EXPECT_EQ(refused("sv2@1?fault=nonsense").message,

@@ -62,6 +62,19 @@ class DrivenTest : public CellTest {
     ASSERT_EQ(next(std::chrono::milliseconds(100)), "701#00");
   }
   const drive::Profile& profile() const { return *cell_.profiles.front(); }
+  /// As delivered, some drives ignore their limit switches: homing to them does not end.
+  void obey_switches() {
+    for (const auto& rule : profile().rules.cautions) {
+      if (rule.masks.empty() || !rule.set) continue;
+      if (const auto* parameter = profile().parameter(rule.name); parameter->object) {
+        write(*parameter->object, std::to_string(*rule.set));
+        send("000#8101");
+        (void)next(std::chrono::milliseconds(500));
+      } else {
+        drive().panel()[rule.name] = *rule.set;
+      }
+    }
+  }
 
   /// The answer; what the drive has to say beside it is kept.
   std::string sdo(std::string_view frame) {
