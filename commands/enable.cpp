@@ -25,6 +25,12 @@ using namespace command;
 using report::Show;
 using report::Value;
 
+/// What is wrong in a word of a batch file is reported before its first line is run.
+Result<void> check_enable(Context& context, const Arguments& arguments) {
+  const auto options = motion_options(context, arguments);
+  return options ? Result<void>() : fail(options.error());
+}
+
 constexpr Parameter kEnableParameters[] = {kTurnOption, kPanelOption, kIgnoreRemoteOption};
 
 using Items = std::vector<motion::PreflightItem>;
@@ -229,6 +235,7 @@ const Command kEnable{
     .needs = Needs::node | Needs::dictionary,
     .effect = Effect::moves,
     .run = run_enable,
+    .check = check_enable,
 };
 
 }  // namespace servoctl::commands

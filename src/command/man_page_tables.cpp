@@ -58,6 +58,8 @@ constexpr Entry kManualEnvironment[] = {
      "The folder for the sockets of `local:` buses, if it belongs to the user. Otherwise they are in "
      "`/run/user/UID/servoctl` or `/tmp/servoctl-UID`."},
     {"HOME", "Where `~` is."},
+    {"SUDO_UID",
+     "The user who started `sudo`. If servoctl runs as root under `sudo`, it also trusts files of this user."},
     {"LANG",
      "See `SERVOCTL_LANG`. Where it, `LC_CTYPE` or `LC_ALL` (the last has precedence) names a locale without "
      "UTF-8, such as C, English text is ASCII; JSON, and Chinese where it was asked for, stay UTF-8."},

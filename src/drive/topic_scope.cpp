@@ -12,6 +12,7 @@ namespace {
 /// Whether nothing shows that the family is on the other network only. CAN has communication parameters of
 /// PDOs (1400h, 1800h), EtherCAT the assignment of PDOs to sync managers (1C12h).
 bool may_be_on(const Profile& profile, std::string_view network) {
+  if (profile.is_generic()) return true;
   const auto has = [&](std::uint16_t index) { return profile.dictionary.object(index) != nullptr; };
   const bool can = has(0x1400) || has(0x1800);
   const bool ethercat = profile.rules.coe.exists() || has(0x1C12);
@@ -65,6 +66,7 @@ void remove_other_methods(Topic& topic, const Profile& profile) {
 }  // namespace
 
 void remove_foreign_topics(std::vector<Topic>& topics, const Profile& profile) {
+  if (profile.rules.family.empty()) return;
   std::erase_if(topics, [&](const Topic& topic) {
     return topic.family == kStandardFamily && !applies(topic, profile);
   });

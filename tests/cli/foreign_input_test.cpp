@@ -92,7 +92,7 @@ TEST_F(ForeignInput, PutsNoDcfOfAnotherMakersDriveIntoOne) {
     spill("silent.dcf", sheet("VendorNumber=0\n"));
     EXPECT_EQ(run("restore %silent.dcf --yes --dry-run"), 0) << console.err_text;
     // What servoctl makes of the family's own data sheet goes back.
-    EXPECT_EQ(run("backup %own.dcf"), 0) << console.err_text;
+    EXPECT_EQ(run("backup %own.dcf --yes"), 0) << console.err_text;
     EXPECT_EQ(run("restore %own.dcf --yes"), 0) << console.err_text;
   }
 }
@@ -167,7 +167,7 @@ TEST_F(ForeignInput, AJournalIsWholeAndNamesNothingButTheMeansOfItsFamily) {
   for (const auto* family : {"gsd600", "dm", "da200", "ts", "sv2", "cia402"}) {
     SCOPED_TRACE(family);
     use(fmt::format("sim:{}@1", family), family);
-    ASSERT_EQ(run("backup %drive.json"), 0);
+    ASSERT_EQ(run("backup %drive.json --yes"), 0);
     for (const auto& text : wrong) {
       SCOPED_TRACE(text.substr(0, 80));
       spill("drive.json.before-node-1.json.journal", text);
@@ -208,7 +208,7 @@ TEST_F(ForeignInput, TextOfEveryLengthIsPutBack) {
     ASSERT_EQ(run(std::string("write 0x2000 -- ") + text), 0) << console.err_text;
     for (const auto* name : {"t.json", "t.csv", "t.servoctl"}) {
       SCOPED_TRACE(name);
-      ASSERT_EQ(run(std::string("backup %") + name), 0);
+      ASSERT_EQ(run(std::string("backup --yes %") + name), 0);
       ASSERT_EQ(run("write 0x2000 \"something else\""), 0);
       EXPECT_EQ(run(std::string("restore --yes %") + name), 0) << console.err_text;
       EXPECT_EQ(run(std::string("diff node:1 %") + name), 0) << console.out_text;

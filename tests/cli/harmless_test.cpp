@@ -101,6 +101,7 @@ const std::map<std::string, std::string> kSamples{
     {"test home", "test home --turn 10000 -n 1 -y"},
     {"test all", "test all 30rpm --turn 10000 -n 1 -y"},
     {"report", "report DIR/report.json -n 1"},
+    {"witness", "witness DIR/witness.json -n 1"},
     {"sync once", "sync once -y"},
     {"sync start", "sync start --for 1s -y"},
     {"sync stop", "sync stop"},

@@ -55,8 +55,8 @@ TEST_F(PdoFiles, BringAMappingIntoAnotherDrive) {
         run("sim:gsd600@1", {"pdo apply " + file + " -n 1 -d gsd600 -y", "pdo show -n 1 -d gsd600"});
     EXPECT_EQ(there, wanted);
     const auto other = run("sim:gsd600@9", {"pdo apply " + file + " -n 9 -d gsd600 -y",
-                                            "pdo save " + path("b.toml") + " -n 9 -d gsd600",
-                                            "pdo save " + path("b.json") + " -n 9 -d gsd600"});
+                                            "pdo save " + path("b.toml") + " -n 9 -d gsd600 -y",
+                                            "pdo save " + path("b.json") + " -n 9 -d gsd600 -y"});
     EXPECT_EQ(read_file(path("b" + fs::path(name).extension().string())).value(), read_file(file).value());
   }
 }

@@ -22,7 +22,7 @@ class ReportCover : public ReportWorld {
   ReportCover() : ReportWorld("sim:gsd600@1,gsd600@2", "gsd600") {}
 
   std::string page(const std::string& options, const std::string& name = "report.html") {
-    return report(name, options);
+    return report(name, options + " --yes");
   }
 
   /// What is wrong is told before a frame is sent.

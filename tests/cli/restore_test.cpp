@@ -21,7 +21,7 @@ TEST_F(RestoreTest, IsPutBackIntoEveryFamily) {
                         Change{"sv2", "write 2001h:1 60"}, Change{"ts", "param set Fn_33=120 Fn_3A=3"}}) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
-    ASSERT_EQ(run("backup %drive.json"), 0);
+    ASSERT_EQ(run("backup %drive.json --yes"), 0);
     ASSERT_EQ(run(c.line), 0) << console.err_text;
     ASSERT_EQ(run("verify %drive.json"), 1);
     EXPECT_EQ(run("restore %drive.json"), 8) << "it asks";
@@ -131,7 +131,7 @@ TEST_F(RestoreTest, WritesNoMemorySwitchAndNoPasswordWhateverTheFileSays) {
                         Case{"sv2", "write 2001h:1 60", "read 2005h:3 --json", "memory switch"}}) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
-    ASSERT_EQ(run("backup %drive.json"), 0);
+    ASSERT_EQ(run("backup %drive.json --yes"), 0);
     EXPECT_NE(slurp("drive.json").find(c.reason), std::string::npos);
     ASSERT_EQ(run(c.change), 0);
     ASSERT_EQ(run(c.look), 0);
@@ -153,7 +153,7 @@ TEST_F(RestoreTest, MakesAFactoryDriveOfEveryFamilyTheSame) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
     ASSERT_EQ(run(c.line), 0) << console.err_text;
-    ASSERT_EQ(run("backup %drive.json"), 0);
+    ASSERT_EQ(run("backup %drive.json --yes"), 0);
     // Another drive, as it comes from the factory.
     use(fmt::format("sim:{}@1", c.family), c.family);
     ASSERT_EQ(run("verify %drive.json"), 1);
@@ -167,7 +167,7 @@ TEST_F(RestoreTest, KeepsWhatTheDriveHeldInItsRamAlready) {
     SCOPED_TRACE(c.family);
     use(fmt::format("sim:{}@1", c.family), c.family);
     ASSERT_EQ(run(c.line), 0);
-    ASSERT_EQ(run("backup %drive.json"), 0);
+    ASSERT_EQ(run("backup %drive.json --yes"), 0);
     ASSERT_EQ(run("restore %drive.json --yes --keep"), 0) << console.err_text;
     EXPECT_NE(console.err_text.find("every value is written to flash"), std::string::npos);
     ASSERT_EQ(run("nmt reset --yes --wait"), 0);

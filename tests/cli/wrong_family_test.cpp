@@ -77,6 +77,7 @@ const std::map<std::string, std::string, std::less<>> kLines{
     {"verify", "verify factory"},
     {"watch", "watch 0x6041 --for 20ms"},
     {"watchdog", "watchdog"},
+    {"witness", "witness %w.json"},
     {"write", "write 0x6060 1"},
     {"units learn", "units learn"},
     {"units show", "units show"},

@@ -186,10 +186,10 @@ TEST_F(MotionTests, AllMovesNothingAfterTheCommunicationHasFailed) {
 
 /// A limit switch that has just been seen not to work is not driven into.
 TEST_F(MotionTests, AllMovesNothingAfterAnInputHasFailed) {
-  build("sv2@1", "sv2");
+  build(kSwitchesObeyed, "sv2");
   const auto result =
       run("test all",
-          {{"speed", "60rpm"}, {"--limit", "3000rpm"}, {"--expect", "negative-limit"}, {"--for", "1s"}});
+          {{"speed", "60rpm"}, {"--limit", "3000rpm"}, {"--expect", "negative-limit"}, {"--for", "1s"}, kPanel});
   EXPECT_EQ(criterion(result, "lost_answers"), "passed 0");
   EXPECT_EQ(criterion(result, "completed"), "none");
   ASSERT_FALSE(context.notices.empty());
@@ -210,8 +210,9 @@ TEST_F(MotionTests, AllMovesNothingWhereTheHomingWouldBeRefusedLater) {
 }
 
 TEST_F(MotionTests, AllRunsEachTest) {
-  build("sv2@1", "sv2");
-  const auto result = run("test all", {{"speed", "60rpm"}, {"--repeat", "2"}, {"--limit", "3000rpm"}});
+  build(kSwitchesObeyed, "sv2");
+  const auto result =
+      run("test all", {{"speed", "60rpm"}, {"--repeat", "2"}, {"--limit", "3000rpm"}, kPanel});
   EXPECT_EQ(criterion(result, "lost_answers"), "passed 0");
   EXPECT_TRUE(criterion(result, "direction_forward").starts_with("passed"));
   EXPECT_EQ(criterion(result, "found"), "passed 2");

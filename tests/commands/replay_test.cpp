@@ -6,6 +6,7 @@
 
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/left_energised.hpp"
 #include "tested_drive.hpp"
 
 namespace servoctl::commands {
@@ -70,6 +71,8 @@ TEST_P(ReplayEveryFamily, SaysThatADriveIsLeftEnergised) {
   build(std::string(GetParam()) + "@1", GetParam());
   ASSERT_TRUE(replay(kEnable));
   EXPECT_EQ(drive().power_state(), DriveState::operation_enabled);
+  // As after every line, whichever command energised it.
+  motion::tell_left_energised(context, session->energised().nodes());
   EXPECT_TRUE(is_noticed("node 1 IS ENERGISED"));
   EXPECT_TRUE(session->energised().contains(1)) << "a prompt that ends disables it";
 }
