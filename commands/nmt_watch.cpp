@@ -159,6 +159,12 @@ class Log {
   bool heard(const Row& row) const {
     return context_->session->can()->watch().boots(row.node) > row.boots || row.emergencies > 0;
   }
+  /// Before the watch, or in it. Guarding is lost as well where nobody ever answered it, and a state is
+  /// forgotten with the heartbeat.
+  bool was_there(const Row& row) const {
+    const auto& watch = context_->session->can()->watch();
+    return watch.heartbeats(row.node) > 0 || watch.boots(row.node) > 0;
+  }
   /// Of a node that was there once and tells nothing regularly, nobody knows.
   Value alive(const Row& row) const {
     if (row.gone) return false;
@@ -169,7 +175,7 @@ class Log {
   void complain(const Row& row) {
     std::string what;
     std::string hint = "try --guard 1s";
-    if (row.lost > 0 && context_->session->can()->watch().state(row.node)) {
+    if (row.lost > 0 && was_there(row)) {
       what = fmt::format("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
       hint.clear();
     } else if (regular(row)) {

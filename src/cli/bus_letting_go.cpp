@@ -23,7 +23,7 @@ constexpr Duration kTelling = std::chrono::seconds(1);
 }  // namespace
 
 void BusHolder::lose(session::Session& session) {
-  const auto lost = make_error(Errc::bus, session.url() + " was lost");
+  const auto lost = make_error(Errc::bus, fmt::format("{} was lost", session.url()));
   for (const auto node : session.energised().nodes()) warn(session, node, lost);
   if (produces_sync(session))
     console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));

@@ -35,7 +35,7 @@ std::string remedy(const HeldCaution& held, const MotionUnits& units) {
 
 Error refusal(const HeldCaution& held, const MotionUnits& units, const std::string& what) {
   const auto because =
-      held.unread ? fmt::format("{} cannot be read, and may be so: {}", held.rule->name, condition_text(held))
+      held.unread ? fmt::format("{} cannot be read; assumed: {}", held.rule->name, condition_text(held))
                   : condition_text(held);
   return drive_error(Errc::refused, units.node(), fmt::format("{}: {}", what, because), remedy(held, units));
 }

@@ -56,7 +56,7 @@ Result<double> Motion::find_unconverted_cap(std::optional<double> most) {
     return std::min(safe, most.value_or(safe));
   }
   return fail(Errc::usage,
-              "a safe speed cannot be derived from this drive: nothing tells what a speed is in rpm",
+              "no safe speed is known for this drive: its speeds cannot be converted to rpm",
               fmt::format("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 
@@ -66,19 +66,19 @@ std::string Motion::unconverted_limit() const {
   const auto unit = units_->unit(objects::kTargetVelocity);
   return options_.supposed_turn
              ? fmt::format(
-                   "the counts of a turn are not known (--turn): the limit is {} {}, {} rpm by the {} that were "
-                   "told for this drive earlier",
+                   "the counts per turn are not known (--turn): the limit is {} {}, which is {} rpm at {}, given for "
+                   "this drive earlier",
                    number_text(*speed_cap_), unit, number_text(kSafeRpm), counts)
              : fmt::format(
-                   "the counts of a turn are not known (--turn): the limit is {} {}, {} rpm by {}, the fewest "
-                   "of this family",
+                   "the counts per turn are not known (--turn): the limit is {} {}, which is {} rpm at {}, the "
+                   "fewest of this family",
                    number_text(*speed_cap_), unit, number_text(kSafeRpm), counts);
 }
 
 Error unproven_speed(const Motion& motion) {
   const auto unit = motion.units().unit(objects::kTargetVelocity);
   return motion.error(
-      Errc::refused, "no speed was given, and nothing tells what the drive's own one is in rpm",
+      Errc::refused, "no speed given, and the drive's own speed cannot be converted to rpm",
       fmt::format("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 

@@ -223,7 +223,7 @@ Result<void> Motion::check_speed(double speed) const {
                       "607Fh and 6080h set it"));
   auto hint = fmt::format("`--limit {}{}` raises it, if the machine may move that fast", numbers.first, unit);
   if (supposed_turn_ && options_.speed_limit.empty())
-    hint = fmt::format("--turn gives the increments per revolution: with {} of them it would be {} rpm; {}",
+    hint = fmt::format("add --turn, the increments per revolution: at {} of them this speed is {} rpm; {}",
                        plain_number(*supposed_turn_, 12), number_text(std::abs(speed) / *supposed_turn_ * 60),
                        hint);
   return fail(error(Errc::refused,

@@ -24,14 +24,15 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
                                Duration longest) {
   const auto end = session_->now() + longest;
   // Without a length it is one look.
-  const auto limit = longest > Duration::zero() ? std::min(end, session_->options().until) : kNever;
+  const bool one_look = longest <= Duration::zero();
+  const auto limit = one_look ? kNever : std::min(end, session_->options().until);
   const session::OptionScope until(*session_, &session::Options::until, limit);
   const auto is_over = [&](const Error& error) {
     const auto& cancelled = session_->options().cancelled;
     return error.code == Errc::interrupted && session_->now() >= end && !(cancelled && cancelled());
   };
   for (;;) {
-    const auto sample = monitor_->sample(end);
+    const auto sample = monitor_->sample(one_look ? kNever : end);
     if (!sample && is_over(sample.error())) return false;
     if (!monitor_->samples().empty() && options_.on_sample) options_.on_sample(monitor_->samples().back());
     if (!sample) return fail(sample.error());

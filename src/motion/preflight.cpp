@@ -34,6 +34,12 @@ constexpr std::array kShown{
     Shown{{0x6072, 0}, "max torque"},
 };
 
+/// The manual does not state the unit of everything.
+std::string value_text(const Physical& value) {
+  return value.unit.empty() ? fmt::format("{} (unit not known)", number_text(value.value))
+                            : fmt::format("{} {}", number_text(value.value), value.unit);
+}
+
 class Preflight {
  public:
   Preflight(session::Session& session, const MotionUnits& units, std::uint8_t node, bool chinese,
@@ -150,7 +156,7 @@ class Preflight {
       if (const auto value = units_->physical(requests[i].object, *answers[i])) {
         if (value->value != 0 || requests[i].object == objects::kFollowingErrorWindow ||
             requests[i].object == objects::kSupplyVoltage)
-          add(Weight::note, names[i], fmt::format("{} {}", number_text(value->value), value->unit));
+          add(Weight::note, names[i], value_text(*value));
       }
     }
     return {};

@@ -14,13 +14,13 @@ constexpr std::string_view kBothLimits = "both limit switches";
 constexpr std::string_view kOther = "{} other than {}";
 constexpr std::string_view kFactory = " (factory value)";
 constexpr std::string_view kMasked =
-    "{}{}: the drive ignores {}. No motion stops there, and servoctl refuses homing methods that need it.";
+    "{}{}: the drive ignores {}. No motion stops there, and servoctl refuses homing methods that need an ignored switch.";
 constexpr std::string_view kBlocked = "{}{}: this is not possible: {}.";
 constexpr std::string_view kNoMethod = "{}{}: these homing methods (6098h) are not possible: {}.";
 constexpr std::string_view kEnding = "To end this, set {}.";
 constexpr std::string_view kEndingByRestart = "To end this, set {} and restart the drive.";
-constexpr std::string_view kSlower = "Above {} --limit is needed.";
-constexpr std::string_view kWeaker = "Above {} --max-torque is needed.";
+constexpr std::string_view kSlower = "Above {}, --limit is needed.";
+constexpr std::string_view kWeaker = "Above {}, --max-torque is needed.";
 
 /// Sentences of one caution in one language.
 class CautionWords {
@@ -52,7 +52,9 @@ class CautionWords {
     add_text(fmt::format(fmt::runtime(say(pattern)), parts...));
   }
 
-  void add_text(std::string_view sentence) { append(out_, std::string(sentence), chinese_ ? "" : " "); }
+  void add_text(std::string_view sentence) {
+    if (!sentence.empty()) append(out_, sentence, chinese_ ? "" : " ");
+  }
 
   std::string condition() const {
     if (caution_->value) return fmt::format("{} = {}", caution_->name, *caution_->value);

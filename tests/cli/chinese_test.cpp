@@ -130,8 +130,11 @@ TEST(Chinese, CallsEachEntryAndParameterByItsOwnName) {
         const auto target = drive::target_at(&*profile, entry.address);
         if (target.parameter == nullptr) look(target, entry.name, entry.name_zh);
       }
-    for (const auto& parameter : profile->parameters)
-      look({.parameter = &parameter}, parameter.name, parameter.name_zh);
+    for (const auto& parameter : profile->parameters) {
+      drive::Target target;
+      target.parameter = &parameter;
+      look(target, parameter.name, parameter.name_zh);
+    }
   }
 }
 

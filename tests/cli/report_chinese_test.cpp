@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 /// What stays: identifiers of the standards, units, names of makers and families, and what the test itself
 /// wrote.
 const std::regex kNames(
-    "AL|CAN|COB|CiA|EtherCAT|ID|INIT|IO|Modbus|NMT|NODEID|OP|PDO|PRE|RPDO|SAFE|SYNC|TPDO|"
+    "AL|CAN|CANopen|COB|CiA|EtherCAT|ID|INIT|IO|Modbus|NMT|NODEID|OP|PDO|PRE|RPDO|SAFE|SYNC|TPDO|"
     "comm|csp|cst|csv|deg|hm|ip|jog|ms|pp|pt|pv|servoctl|vl|ACME|"
     "DM|GSD|INVT|SINSEGYE|SV|DA|DSX|Syntron|TS|VMMORE|da|dm|gsd|sv|ts|sim|Dn_|Pn|Fn_|PA|ERR_oc");
 

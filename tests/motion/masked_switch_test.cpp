@@ -57,7 +57,7 @@ TEST(MaskedSwitch, OneForcedLimitInputRefusesItsOwnMethodsAlone) {
 TEST(MaskedSwitch, APanelParameterThatNobodyHasReadMayMaskIt) {
   MotionBench bench("sv2");
   for (const auto* method : {"17", "18", "23", "27"})
-    expect_refused(bench, method, "PA-20 cannot be read, and may be so: PA-20 = 1",
+    expect_refused(bench, method, "PA-20 cannot be read; assumed: PA-20 = 1",
                    "set PA-20 = 0 on the panel and restart the drive, then add --panel PA-20=0");
   EXPECT_TRUE(planned(bench, "35"));
   bench.options.panel["PA20"] = 0;

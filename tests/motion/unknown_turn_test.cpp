@@ -31,7 +31,7 @@ TEST(UnknownTurn, IsJudgedByTheFewestCountsOfTheFamily) {
   MotionBench bench("gsd600");
   const auto plan = plan_of(bench, home_at_own_speeds(), plan_home);
   expect_refused(plan, "is above the limit of 163840 inc/s");
-  EXPECT_NE(plan.error().hint.find("with 32768 of them it would be 2400 rpm"), std::string::npos)
+  EXPECT_NE(plan.error().hint.find("at 32768 of them this speed is 2400 rpm"), std::string::npos)
       << plan.error().hint;
   bench.options.turn = 131072;
   expect_refused(plan_of(bench, home_at_own_speeds(), plan_home), "is above the limit of 300 rpm");

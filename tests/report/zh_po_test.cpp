@@ -75,7 +75,7 @@ TEST(ZhPo, AsksAndWarnsInWholeSentences) {
        "0x6041:0：200 ms 内无应答"},
       {"node 1: IT IS IN operation enabled (statusword 0x0237), NOT DE-ENERGISED: SWITCH OFF THE SUPPLY (nothing is known "
        "that stops it by itself); the motion ended with: node 1, object 0x6041:0: no answer within 200 ms",
-       "节点 1：驱动器处于伺服运行（状态字 0x0237），电机未断电：切断供电电源（不知道有什么能使其自行停止）；运动以此结束：节点 1，对象 "
+       "节点 1：驱动器处于伺服运行（状态字 0x0237），未去使能：切断供电电源（不知道有什么能使其自行停止）；运动以此结束：节点 1，对象 "
        "0x6041:0：200 ms 内无应答"},
       {"node 1: it did not answer and was sent NMT \"enter pre-operational\": a stopped node does not answer",
        "节点 1：它无应答，已向其发送 NMT 命令“进入预操作”：已停止的节点不应答"},
