@@ -150,7 +150,8 @@ class Preflight {
       if (const auto value = units_->physical(requests[i].object, *answers[i])) {
         if (value->value != 0 || requests[i].object == objects::kFollowingErrorWindow ||
             requests[i].object == objects::kSupplyVoltage)
-          add(Weight::note, names[i], fmt::format("{} {}", number_text(value->value), value->unit));
+          add(Weight::note, names[i],
+              fmt::format("{}{}{}", number_text(value->value), value->unit.empty() ? "" : " ", value->unit));
       }
     }
     return {};

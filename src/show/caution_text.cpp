@@ -52,7 +52,9 @@ class CautionWords {
     add_text(fmt::format(fmt::runtime(say(pattern)), parts...));
   }
 
-  void add_text(std::string_view sentence) { append(out_, std::string(sentence), chinese_ ? "" : " "); }
+  void add_text(std::string_view sentence) {
+    if (!sentence.empty()) append(out_, std::string(sentence), chinese_ ? "" : " ");
+  }
 
   std::string condition() const {
     if (caution_->value) return fmt::format("{} = {}", caution_->name, *caution_->value);
