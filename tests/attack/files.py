@@ -26,7 +26,7 @@ FULL = "No space left"
 
 
 def command(path, family):
-    at = ["-b", f"sim:{family}@1", "-n", "1", "-d", family]
+    at = ["-b", f"sim:{family}@1", "-n", "1", "-d", family, "--yes"]
     return rng.choice([["backup", path, *at], ["backup", path, "--format", "csv", *at], ["backup", path, "--format", "dcf", *at],
                        ["scope", "0x6041", "--for", "50ms", "--csv", path, *at], ["scope", "0x6041", "--for", "50ms", "--svg", path, *at]])
 
@@ -70,6 +70,9 @@ def replaced(folder, family):
         name = link
     links = [p for p in folder.iterdir() if p.is_symlink()]
     words = command(str(name), family)
+    code, err = run([word for word in words if word != "--yes"])
+    if code != 8 or path.read_text(errors="replace") != "old":
+        return words, f"without --yes: exit {code}: {err}"
     code, err = run(words)
     if code != 0:
         return words, f"exit {code}: {err}"
@@ -159,7 +162,7 @@ def read_only(folder, family):
 
 def killed(folder, family):
     path = folder / "out.json"
-    at = ["-b", f"sim:{family}@1", "-n", "1", "-d", family]
+    at = ["-b", f"sim:{family}@1", "-n", "1", "-d", family, "--yes"]
     words = ["backup", str(path), *at]
     old = json.dumps({"old": "x" * rng.choice([10, 100000])})
     path.write_text(old)

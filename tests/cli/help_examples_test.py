@@ -51,6 +51,8 @@ BEFORE = {
     "pdo watch": ["nmt start -n 1 --yes"],
     "pdo send": ["nmt start -n 1 --yes"],
     "undo": ["param set Pn0214 45Hz -n 1 -d gsd600"],
+    "test home --limit": ["param set Pn0603=0 -n 1 -d gsd600", "store -n 1 -d gsd600", "nmt reset -n 1 --wait"],
+    "test all 60rpm -n 1 -d gsd600": ["param set Pn0603=0 -n 1 -d gsd600", "store -n 1 -d gsd600", "nmt reset -n 1 --wait"],
     "units forget": ["units learn -n 1 -d gsd600 --yes"],
     "sync stop": ["sync start --period 10ms --yes"],
 }

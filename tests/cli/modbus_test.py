@@ -51,7 +51,7 @@ def everything(what, asks, serves):
         nodes = [row["node"] for row in json.loads(answer.stdout)["result"]]
         check(f"{what}: scan finds both\n{answer.stdout}{answer.stderr}", nodes == [1, 2])
         run(asks, "param", "set", "Fn_12E=77", "-n", "1")
-        answer = run(asks, "backup", "one.json", "-n", "1")
+        answer = run(asks, "backup", "one.json", "-n", "1", "--yes")
         check(f"{what}: backup\n{answer.stdout}{answer.stderr}", answer.returncode == 0)
         run(asks, "param", "set", "Fn_33=5", "Fn_12E=50", "-n", "1")
         answer = run(asks, "verify", "one.json", "-n", "1")
@@ -62,7 +62,7 @@ def everything(what, asks, serves):
         check(f"{what}: but no speed, which a drive that an input enables would follow\n{answer.stderr}",
               value(run(asks, "param", "get", "Fn_33", "-n", "1", "--json")) == 5 and "stays as it is" in answer.stderr)
         # Address 0 calls all, and none answers to it.
-        run(asks, "backup", "zero.csv", "-n", "1")
+        run(asks, "backup", "zero.csv", "-n", "1", "--yes")
         with open(os.path.join(folder, "zero.csv")) as file:
             table = file.read()
         with open(os.path.join(folder, "zero.csv"), "w") as file:
@@ -72,7 +72,7 @@ def everything(what, asks, serves):
         check(f"{what}: and stays as it is", value(run(asks, "param", "get", "Fn_3A", "-n", "1", "--json")) == 1)
         answer = run(asks, "restore", "one.json", "-n", "1", "--with-address", "--yes")
         check(f"{what}: another address is no reason to refuse\n{answer.stderr}", answer.returncode == 0)
-        run("sim:ts@1", "backup", "can.json", "-n", "1")
+        run("sim:ts@1", "backup", "can.json", "-n", "1", "--yes")
         answer = run(asks, "diff", "one.json", "can.json", "--json")
         told = [row["id"] for row in json.loads(answer.stdout)["result"]["differences"]]
         check(f"{what}: a backup compares with one over CAN\n{answer.stdout}{answer.stderr}", told == ["Fn_12E", "Fn_33"] or told == ["Fn_33", "Fn_12E"])

@@ -81,7 +81,7 @@ def a_reset_of_another_master(bus):
     check(f"{bus.name}: no value of the other mapping is shown\n{out[-1500:]}{err}", {value["raw"] for value in samples} == {0})
     check(f"{bus.name}: first by PDO, then by SDO", [samples[0]["by"], samples[-1]["by"]] == ["pdo", "sdo"]
           or "pdo" in {value["by"] for value in samples})
-    check(f"{bus.name}: it is said\n{document['notices']}", any("node 1 has restarted: its values are read by SDO" in notice
+    check(f"{bus.name}: it is said\n{document['notices']}", any("its values are read by SDO until its PDO mapping" in notice
                                                                for notice in document["notices"]))
 
 

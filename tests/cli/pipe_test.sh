@@ -72,6 +72,7 @@ lab=$(cd "$(dirname "$0")" && pwd)/data/drives
 work=$(mktemp -d)
 head -c 100000 /dev/urandom >"$work/blob"
 for transfer in auto segmented block; do
+  rm -f "$work/back"
   printf '%s\n' "write 1F50:1 --from $work/blob --transfer $transfer" "read 1F50:1 --to $work/back --transfer $transfer" |
     SERVOCTL_DRIVES=$lab "$servoctl" -b sim:lab@3 -n 3 -d lab >/dev/null 2>"$work/errors"
   check "write and read 100 kB, $transfer" 0 $?

@@ -58,7 +58,7 @@ try:
     # Another drive stands there when the answer comes.
     for number, words in enumerate((["restore", "waits.json"], ["address", "9"], ["jog", "60rpm", "--for", "300ms", "--turn", "131072"])):
         here = [scene(number)]
-        check("backup", run("backup", "waits.json").returncode == 0)
+        check("backup", run("backup", "waits.json", "--yes").returncode == 0)
         run("param", "set", "Pn0207=77")
 
         def exchange():
