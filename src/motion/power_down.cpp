@@ -252,12 +252,15 @@ DriveState PowerDown::take_state(const Result<Bytes>& answer) {
 
 std::vector<session::PlannedMessage> planned_power_down(std::uint8_t node, PowerAim aim) {
   std::vector<session::PlannedMessage> out;
-  const auto say = [&](std::uint16_t word) {
-    out.push_back(session::planned_write({node, objects::kControlword, store_le(word, 2)}));
+  const auto say = [&](std::uint16_t word, std::string when = {}) {
+    out.push_back(session::planned_write({node, objects::kControlword, store_le(word, 2)}, std::move(when)));
   };
   if (aim != PowerAim::disable) say(kQuickStopWord);
   if (aim != PowerAim::stop) {
-    say(kSwitchOffWord);
+    // From any other state 00h follows the quick stop at once.
+    say(kSwitchOffWord, aim == PowerAim::stop_and_disable
+                            ? "if it is still in operation enabled or does not answer"
+                            : "");
     say(kDisableVoltageWord);
   }
   out.push_back(session::planned_state(

@@ -157,7 +157,7 @@ TEST_P(DryRun, ShowsWhatIsSentByCommandsThatStoreResetAndSwitch) {
                            "defaults -n 1",
                            "disable -n 1",
                            "quick-stop -n 1",
-                           "stop",
+                           "stop -n 1",
                            "mode 1 -n 1",
                            "mode 3 -n 1",
                            "mode 99 -n 1",
