@@ -27,6 +27,7 @@ FOREIGN = {"--delay", "--device", "--net=host", "--privileged"}
 OTHER = {
     "man servoctl": "the program man",
     "man -l -": "the program man",
+    "jog 60 --limit 100": "a drive whose unit nothing states, and the families state theirs",
     'heartbeat = "500ms"': "a line of a cabinet file",
     "state error 0x001A": "what the prompt says",
     "param set Pn0000=": "a line that is not whole yet",

@@ -44,7 +44,12 @@ while [ $((resumed + undone)) -lt "$count" ]; do
   [ $((RANDOM % 2)) -eq 0 ] && signal=TERM
   "$servoctl" "${line[@]}" >"$out" 2>/dev/null &
   restore=$!
-  sleep "$(printf '0.%06d' $((lasts / 3 + RANDOM * 33 % (lasts * 2 / 3 + 1))))"
+  if [ $((RANDOM % 2)) -eq 0 ]; then
+    sleep "$(printf '%d.%06d' $((at = lasts / 3 + RANDOM * 33 % (lasts * 2 / 3 + 1), at / 1000000)) $((at % 1000000)))"
+  else # A busy machine makes the time of one no measure of another: while it writes.
+    until [ -e good.json.before-node-1.json.journal ] || ! kill -0 $restore 2>/dev/null; do sleep 0.002; done
+    sleep "$(printf '0.%06d' $((RANDOM * 3 % 80000)))"
+  fi
   ended=true
   kill -$signal $restore 2>/dev/null && ended=false
   wait $restore 2>/dev/null
