@@ -99,7 +99,7 @@ Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
     items->push_back({PreflightItem::Weight::caution, "units",
                       "nothing states the unit of speeds (60A9h, the drive's data): plain numbers go to the "
                       "drive as they are, and no limit in rpm holds"});
-  else if (speed_cap_ && options_.speed_limit.empty() && supposed_turn_)
+  else if (speed_cap_ && options_.speed_limit.empty() && supposed_turn_ && !limited_by_monitor_)
     items->push_back({PreflightItem::Weight::caution, "speed", unconverted_limit()});
   return items;
 }

@@ -130,6 +130,8 @@ class Motion {
   std::optional<Duration> duration(double way, double speed) const;
   /// What a motor that turns at this speed still shows at rest is found from it.
   void set_standstill(double speed);
+  /// The speed is limited by the drive's own monitor in rpm, which needs no counts per turn.
+  void limit_by_monitor() { limited_by_monitor_ = true; }
   /// Below this the motor stands still, in the unit of 606Ch.
   bool stands_still(const MotionSample& sample) const;
   double standstill() const { return standstill_; }
@@ -191,6 +193,7 @@ class Motion {
   double standstill_ = 0;
   std::optional<Purpose> purpose_;
   bool speed_unproven_ = false;
+  bool limited_by_monitor_ = false;
   std::optional<double>
       supposed_turn_;               ///< Increments by which kSafeRpm was converted, for want of known ones.
   std::string turn_unchecked_;      ///< Why the counts of a turn were not held against the monitor.

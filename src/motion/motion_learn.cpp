@@ -236,6 +236,7 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
   plan.moving = {{objects::kTargetVelocity, plan.command},
                  {objects::kTargetVelocity, Bytes(plan.command.size(), 0)}};
   motion.set_standstill(plan.value);
+  motion.limit_by_monitor();
   motion.supervise_overspeed(plan.value);
   return plan;
 }
