@@ -51,8 +51,7 @@ Result<void> energise(Context& context, motion::Motion& motion, const Items& sho
     if (const auto done = guard.start_node(); !done) return done;
   if (starts_first && !context.dry_run) {
     const auto fine = motion::look_in_op(*context.session, motion.units(), motion.node(), context.chinese,
-                                         shown, motion::ask_again(context, motion.node()),
-                                         motion.request());
+                                         shown, motion::ask_again(context, motion.node()), motion.request());
     if (!fine) return fine;
   }
   if (const auto done = guard.enable(); !done) return done;

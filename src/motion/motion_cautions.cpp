@@ -55,8 +55,7 @@ Result<double> Motion::find_unconverted_cap(std::optional<double> most) {
     const double safe = kSafeRpm / 60 * *supposed_turn_;
     return std::min(safe, most.value_or(safe));
   }
-  return fail(Errc::usage,
-              "no safe speed is known for this drive: its speeds cannot be converted to rpm",
+  return fail(Errc::usage, "no safe speed is known for this drive: its speeds cannot be converted to rpm",
               fmt::format("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 

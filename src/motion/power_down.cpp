@@ -258,9 +258,8 @@ std::vector<session::PlannedMessage> planned_power_down(std::uint8_t node, Power
   if (aim != PowerAim::disable) say(kQuickStopWord);
   if (aim != PowerAim::stop) {
     // From any other state 00h follows the quick stop at once.
-    say(kSwitchOffWord, aim == PowerAim::stop_and_disable
-                            ? "if it is still in operation enabled or does not answer"
-                            : "");
+    say(kSwitchOffWord,
+        aim == PowerAim::stop_and_disable ? "if it is still in operation enabled or does not answer" : "");
     say(kDisableVoltageWord);
   }
   out.push_back(session::planned_state(

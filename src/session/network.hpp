@@ -234,8 +234,8 @@ class Network {
   /// question whether it is cancelled. An error of the first node that could not be put back; all are tried.
   virtual Result<void> close() { return {}; }
 
-  /// What energises the node later was sent, such as a PDO that waits for SYNC: that it is seen at rest proves
-  /// nothing until it was seen energised, or was disabled. Nothing where every write is answered.
+  /// What energises the node later was sent, such as a PDO that waits for SYNC: that it is seen at rest
+  /// proves nothing until it was seen energised, or was disabled. Nothing where every write is answered.
   virtual void expect_power(std::uint8_t) {}
   virtual void end_expecting(std::uint8_t) {}
   virtual bool expects_power(std::uint8_t) const { return false; }

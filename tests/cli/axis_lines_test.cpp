@@ -198,7 +198,8 @@ TEST_F(AxisLines, ATestBelongsToTheAxisItNamesWhereTwoBusesHaveTheNode) {
                  : "now ";
   }
   EXPECT_EQ(reads, "now earlier ");
-  EXPECT_EQ(run("report " + file.string() + " --yes -n feeder1 --tests " + (folder / "tests.json").string()), 0);
+  EXPECT_EQ(run("report " + file.string() + " --yes -n feeder1 --tests " + (folder / "tests.json").string()),
+            0);
   EXPECT_TRUE(says("test comm of axis table is not in the report: add the axis to -n")) << all();
 }
 

@@ -195,9 +195,9 @@ TEST_F(MotionTests, AllMovesNothingAfterTheCommunicationHasFailed) {
 /// A limit switch that has just been seen not to work is not driven into.
 TEST_F(MotionTests, AllMovesNothingAfterAnInputHasFailed) {
   build(kSwitchesObeyed, "sv2");
-  const auto result =
-      run("test all",
-          {{"speed", "60rpm"}, {"--limit", "3000rpm"}, {"--expect", "negative-limit"}, {"--for", "1s"}, kPanel});
+  const auto result = run(
+      "test all",
+      {{"speed", "60rpm"}, {"--limit", "3000rpm"}, {"--expect", "negative-limit"}, {"--for", "1s"}, kPanel});
   EXPECT_EQ(criterion(result, "lost_answers"), "passed 0");
   EXPECT_EQ(criterion(result, "completed"), "none");
   ASSERT_FALSE(context.notices.empty());

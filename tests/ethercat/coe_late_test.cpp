@@ -18,7 +18,7 @@ TEST_F(CoeClientTest, ALateAnswerIsNoneToTheNextReadOfTheObject) {
   upload(kLateMode, {"> 00204060600000000000", "+ 500ms", "> 00208060600000000405"});
   EXPECT_EQ(result().error().code, Errc::timeout);
   upload(kLateMode, {"> 00204000100000000000", "< 00304F60600001000000", "< 00304300100092010200",
-                 "> 00204060600000000000", "< 00304F60600003000000"});
+                     "> 00204060600000000000", "< 00304F60600003000000"});
   EXPECT_EQ(data(), "03");
 }
 
@@ -30,7 +30,8 @@ TEST_F(CoeClientTest, AConfirmationThatMayBeOfAnEarlierWriteLeavesOpenWhetherThe
 }
 
 TEST_F(CoeClientTest, WhatWasHeardIsPartOfTheMessageAboutSilence) {
-  upload(kLateStatus, {"> 00204041600000000000", "< 00308000000000000206", "+ 500ms", "> 00208041600000000405"});
+  upload(kLateStatus,
+         {"> 00204041600000000000", "< 00308000000000000206", "+ 500ms", "> 00208041600000000405"});
   expect_failure(
       Errc::protocol,
       "node 2, object 0x6041:0: no answer within 500 ms; it aborted with 0x06020000 and named object "

@@ -111,8 +111,8 @@ TEST(Cautions, BelongToTheMotionThatTheyConcern) {
   EXPECT_FALSE(tells(told_for(ts, {drive::Use::jog}), "Fn_99"));
   MotionBench gsd600("gsd600", 131072);
   for (const auto use : {drive::Use::jog, drive::Use::move, drive::Use::torque})
-    EXPECT_TRUE(tells(told_for(gsd600, {use}),
-                      "Pn0603 = 3 (factory value): the drive ignores both limit switches"));
+    EXPECT_TRUE(
+        tells(told_for(gsd600, {use}), "Pn0603 = 3 (factory value): the drive ignores both limit switches"));
   EXPECT_FALSE(tells(told_for(gsd600, {drive::Use::enable}), "Pn0603"));
 }
 

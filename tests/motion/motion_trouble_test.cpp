@@ -162,9 +162,8 @@ TEST_F(MotionTrouble, SignalsAreHeldBackUntilTheDriveIsAtRest) {
   bench.session->options().protection = &protection;
   ASSERT_TRUE(bench.jog(jog_for("60rpm", 200ms)).outcome);
   bench.session->options().protection = nullptr;
-  const std::vector<std::pair<session::Care, bool>> expected{{session::Care::guarded, false},
-                                                             {session::Care::unsettled, false},
-                                                             {session::Care::none, false}};
+  const std::vector<std::pair<session::Care, bool>> expected{
+      {session::Care::guarded, false}, {session::Care::unsettled, false}, {session::Care::none, false}};
   EXPECT_EQ(told, expected);
 }
 

@@ -62,7 +62,8 @@ TEST(UnknownTurn, AMoveTakesAPartOfTheSlowestThatMayBeMeant) {
 TEST(UnknownTurn, NeedsSpeedAndLimitWhereNothingTellsTheWorst) {
   MotionBench bench("gsd600");
   // Pn0462: the gear of the resolution is none that the manual explains.
-  ASSERT_TRUE(bench.session->download(1, {0x2002, 0x3F}, store_le(2, bench.drive().value({0x2002, 0x3F}).size())));
+  ASSERT_TRUE(
+      bench.session->download(1, {0x2002, 0x3F}, store_le(2, bench.drive().value({0x2002, 0x3F}).size())));
   expect_refused(plan_of(bench, home_at_own_speeds(), plan_home), "no speed was given");
   Move move;
   move.target = "1000inc";
