@@ -35,8 +35,7 @@ bool has_method(const Profile& profile, std::int64_t method) {
   const auto& like = profile.rules.motion.homing_like;
   if (const auto other = like.find(method); other != like.end() && other->second != method) return false;
   const auto* const entry = profile.dictionary.find(objects::kHomingMethod);
-  if (entry == nullptr) return false;
-  if (entry->labels.empty()) return true;
+  if (entry == nullptr || entry->labels.empty()) return true;
   return std::any_of(entry->labels.begin(), entry->labels.end(),
                      [&](const od::EnumLabel& label) { return label.value == method; });
 }
@@ -46,7 +45,8 @@ bool applies(const Topic& topic, const Profile& profile) {
   if (topic.mode && !has_mode(profile, *topic.mode)) return false;
   if (!topic.object) return true;
   const auto* const object = profile.dictionary.object(topic.object->index);
-  if (object == nullptr) return false;
+  // A file of a drive that nobody knows may leave out what the drive has.
+  if (object == nullptr) return profile.is_generic() || profile.dictionary.empty();
   if (topic.value && topic.object == objects::kModeOfOperation) return has_mode(profile, *topic.value);
   if (topic.value && topic.object == objects::kHomingMethod) return has_method(profile, *topic.value);
   const auto* const entry = profile.dictionary.find(*topic.object);

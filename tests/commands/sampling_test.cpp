@@ -241,7 +241,7 @@ TEST_F(SamplingAfterARestart, MonitorSaysFactoryMappingAndReadsItAgainWhereItAsk
   const auto json = json_of(run("monitor", {{"--ask", "true"}, {"--for", "8s"}}));
   EXPECT_TRUE(is_noticed("node 1: its PDO mapping was read again"));
   // TPDO1 with the torque before the restart; with the statusword, never the torque, afterwards.
-  const auto restart = json.find("\"boot-up\"");
+  const auto restart = json.find("\"service\":\"boot-up\",\"node\"");
   ASSERT_NE(restart, std::string::npos);
   EXPECT_NE(json.substr(0, restart).find("\"index\":24695"), std::string::npos);
   EXPECT_EQ(json.substr(restart).find("\"index\":24695,\"sub\":0,\"name\":\"Torque actual value\",\"value\""),

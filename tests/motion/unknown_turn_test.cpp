@@ -64,12 +64,12 @@ TEST(UnknownTurn, NeedsSpeedAndLimitWhereNothingTellsTheWorst) {
   // Pn0462: the gear of the resolution is none that the manual explains.
   ASSERT_TRUE(
       bench.session->download(1, {0x2002, 0x3F}, store_le(2, bench.drive().value({0x2002, 0x3F}).size())));
-  expect_refused(plan_of(bench, home_at_own_speeds(), plan_home), "no speed was given");
+  expect_refused(plan_of(bench, home_at_own_speeds(), plan_home), "no speed given");
   Move move;
   move.target = "1000inc";
-  expect_refused(plan_of(bench, move, plan_move), "no speed was given");
+  expect_refused(plan_of(bench, move, plan_move), "no speed given");
   move.speed = "100inc/s";
-  expect_refused(plan_of(bench, move, plan_move), "a safe speed cannot be derived");
+  expect_refused(plan_of(bench, move, plan_move), "no safe speed is known");
   bench.options.speed_limit = "100inc/s";
   const auto plan = plan_of(bench, move, plan_move);
   EXPECT_TRUE(plan) << plan.error().message;
