@@ -12,7 +12,7 @@ from checks import check, finish
 
 servoctl = os.path.abspath(sys.argv[1])
 eds = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../eds")
-folder = tempfile.mkdtemp(prefix="foreign")
+folder = tempfile.mkdtemp(prefix="foreign", dir="/tmp")  # Another user has to reach it.
 os.chmod(folder, 0o755)
 bare = {k: v for k, v in os.environ.items() if not k.startswith(("SERVOCTL_", "SUDO_"))} | {
     "XDG_STATE_HOME": os.path.join(folder, "state"), "XDG_CONFIG_HOME": os.path.join(folder, "config")}

@@ -179,11 +179,11 @@ def check_cut_off(folder, env):
     # A report with every kind of test in it.
     turn = " --turn 131072 --limit 600rpm"
     for each in (f"all 60rpm --for 1s --tolerance 50 --stop-within 5s --repeat 2{turn}",  # It may end before it comes to its home.
-                 f"home 35{turn}", "io --for 100ms"):
+                 f"jog 60rpm --for 1s --tolerance 50 --stop-within 5s{turn}", f"home 35{turn}", "io --for 100ms"):
         tested = run(f"test {each} -n 1 -d gsd600 -y -b sim:gsd600@1", folder, env)[1]
         with open(os.path.join(folder, f"{each.split()[0]}.json"), "w", encoding="utf-8") as out:
             out.write("\n".join(tested))
-    run("report tested.json --tests all.json --tests home.json --tests io.json -n 1 -d gsd600 -b sim:gsd600@1", folder, env)
+    run("report tested.json --tests all.json --tests jog.json --tests home.json --tests io.json -n 1 -d gsd600 -b sim:gsd600@1", folder, env)
     with open(os.path.join(folder, "plan.csv"), "w", encoding="utf-8") as out:
         out.write("node,new\n1,5\n")
     in_lines("sim:ts@1", "ts", "address --plan plan.csv -n all --unlock --wait 100ms -y")
