@@ -31,6 +31,7 @@ write 0x6083 1000
 param get Pn0214
 param set Pn0214=45Hz
 backup down.json
+witness down-witness.json
 cabinet init down.toml
 cabinet plan
 cabinet apply --yes
@@ -55,6 +56,7 @@ fault clear-history --yes
 enable --yes
 disable
 quick-stop
+stop
 mode
 jog 60rpm --for 5s --turn 131072 --yes
 move 1rev --relative --turn 131072 --yes
