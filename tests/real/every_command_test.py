@@ -114,7 +114,7 @@ LEFT_OUT = {
 AT_ONCE = {"nmt start", "nmt stop", "nmt preop", "nmt reset", "nmt reset-comm", "sync once", "replay", "lss scan", "lss inquire", "lss select", "lss set-node",
            "lss set-bitrate", "lss store"}
 # Ways out, which wait for a bus that is lost.
-WAIT = {"disable", "quick-stop"}
+WAIT = {"disable", "quick-stop", "stop"}
 
 
 def run(*words):
