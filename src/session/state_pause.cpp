@@ -43,9 +43,11 @@ Result<std::optional<NodeState>> ask_state(Session& session, std::uint8_t node, 
   const auto heard = session.watch().heartbeats(node);
   if (period == Duration::zero()) {
     const bool is_guarded = number_in(answers[1]).value_or(0) != 0 && number_in(answers[2]).value_or(0) != 0;
-    if (!by_question || is_guarded || !session.network().carries(LifeSign::Kind::guarding))
-      return std::nullopt;
-    if (const auto sent = session.network().ask_state(node); !sent) return fail(sent.error());
+    if (!by_question || is_guarded) return std::nullopt;
+    const auto sent = session.network().ask_state(node);
+    // Some buses carry no remote frame: then nobody can be asked.
+    if (!sent && sent.error().code == Errc::usage) return std::nullopt;
+    if (!sent) return fail(sent.error());
     patience = session.options().timeout;
   }
   const auto waited =

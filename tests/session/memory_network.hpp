@@ -87,7 +87,7 @@ class MemoryNetwork final : public Network, private NodeRecords {
     return {};
   }
   void doubt_state(std::uint8_t node) override { told_[node].state.reset(); }
-  bool carries(LifeSign::Kind kind) const override { return kind == LifeSign::Kind::guarding; }
+  bool carries(LifeSign::Kind) const override { return false; }
   Result<void> arm_watchdog(std::uint8_t, const LifeSign&) override {
     return fail(Errc::usage, "memory: there are no signs of life here");
   }
