@@ -141,22 +141,23 @@ Result<report::Value> all_topics(const Context& context, const Shelf& shelf) {
   return answer(show::topic_list(all, context.chinese, page_width(context)), all);
 }
 
-/// Whether the standard explains these words, which the family's data exclude.
-bool is_of_the_standard_alone(const Context& context, std::string_view said) {
+/// Whether the standard explains these words, which the family's data exclude: nothing was found, or only
+/// texts and rows in which they stand.
+bool is_of_the_standard_alone(const Context& context, std::string_view said,
+                              std::span<const Explanation> found) {
   if (context.profile == nullptr || context.profile->is_generic()) return false;
+  if (!found.empty() && found.front().found < Found::row) return false;
   const auto standard = drive::shared_profile(drive::kStandardFamily, context.drive_folders);
   auto topics = standard ? drive::load_own_topics(**standard) : Result<std::vector<drive::Topic>>();
   if (!standard || !topics) return false;
   topics->push_back(show::al_status_topic());
   const std::vector<show::Library> shelf{{standard->get(), std::move(*topics), false}};
-  return !show::explanations(show::TopicQuery(said), shelf, false).empty();
+  const auto standards = show::explanations(show::TopicQuery(said), shelf, false);
+  return !standards.empty() && (found.empty() || standards.front().found < Found::row);
 }
 
 tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf, std::string_view said) {
   const auto family = context.profile == nullptr ? std::string() : context.profile->family;
-  if (is_of_the_standard_alone(context, said))
-    return fail(Errc::negative, fmt::format("not on this drive: {} has no '{}'", family, said),
-                fmt::format("`explain {}` without -d shows the meaning in the standard", said));
   auto hint = did_you_mean(said, show::explained_names(shelf.libraries));
   if (hint.empty())
     hint =
@@ -183,6 +184,10 @@ Result<report::Value> run_explain(Context& context, const Arguments& arguments) 
     for (auto& library : shelf->libraries) library.by_name_only = false;
     all = show::explanations(query, shelf->libraries, context.chinese);
   }
+  if (is_of_the_standard_alone(context, said, all))
+    return fail(Errc::negative,
+                fmt::format("not on this drive: {} has no '{}'", context.profile->family, said),
+                fmt::format("`explain {}` without -d shows the meaning in the standard", said));
   if (all.empty()) return no_entry_found(context, *shelf, said);
   return told(context, all, in_families);
 }
