@@ -115,7 +115,7 @@ void tell_found(Context& context, const ScanWish& wish, std::span<const session:
           Errc::refused,
           fmt::format("{} LSS slaves have one identity: {}", each.slaves, to_string(each.address)),
           "LSS cannot tell them apart: switch all but one of them off, and take one after the other"));
-  if (!found.empty()) return;
+  if (!found.empty() || wish.first) return;
   context.notices.push_back(
       wish.low
           ? "no LSS slave of this identity answers"
@@ -151,11 +151,13 @@ report::Table slaves_table(const Context& context, std::span<const session::LssF
     const auto guess =
         a.vendor == 0 ? std::string() : show::guess_text(session::guess_by_sii(identity, families));
     const auto end = i < given.size() ? given[i] : Given{};
-    table.rows.push_back({report::Hex{a.vendor, 8}, report::Hex{a.product, 8}, report::Hex{a.revision, 8},
-                          a.serial, found[i].slaves, report::text_or_null(guess),
-                          found[i].node ? Value(*found[i].node) : Value(),
-                          end.node ? Value(*end.node) : Value(), report::text_or_null(end.outcome.result),
-                          end.outcome.kept ? Value(*end.outcome.kept) : Value()});
+    table.rows.push_back(
+        {report::Hex{a.vendor, 8}, report::Hex{a.product, 8}, report::Hex{a.revision, 8}, a.serial,
+         found[i].slaves, report::text_or_null(guess), found[i].node ? Value(*found[i].node) : Value(),
+         end.node ? Value(*end.node) : Value(),
+         i < given.size() || given.empty() || found[i].node ? report::text_or_null(end.outcome.result)
+                                                            : Value("not reached"),
+         end.outcome.kept ? Value(*end.outcome.kept) : Value()});
   }
   table.json_only = found.empty();
   return table;
@@ -194,8 +196,9 @@ Result<std::vector<std::uint8_t>> nodes_from(std::uint8_t first, std::size_t cou
   return out;
 }
 
-/// One after the other; ends with the first that does not take its node-ID, for what went wrong may concern
-/// all. One that has taken it and does not start with it keeps nobody from going on.
+/// One after the other; ends with the first that does not take its node-ID, or takes another, for what went
+/// wrong may concern all, and with Ctrl-C. One that has taken it and does not start with it keeps nobody from
+/// going on.
 std::vector<Given> give(Context& context, std::span<const session::LssFound> found,
                         std::span<const std::uint8_t> nodes, bool keep) {
   std::vector<Given> out;
@@ -206,7 +209,8 @@ std::vector<Given> give(Context& context, std::span<const session::LssFound> fou
     out.push_back({nodes[i], settings::give_lss_node(context, slave, {slave.address, nodes[i], keep})});
     const auto& outcome = out.back().outcome;
     if (outcome.error) context.errors.push_back(*outcome.error);
-    if (!outcome.taken) break;
+    const bool interrupted = outcome.error && outcome.error->code == Errc::interrupted;
+    if (!outcome.taken || outcome.strayed || interrupted) break;
   }
   return out;
 }
@@ -223,7 +227,11 @@ Result<Value> assign(Context& context, const ScanWish& wish, std::vector<session
         fmt::format("node {} answers fastscan, but has a node-ID: it was left alone", *each.node));
   const auto nodes = nodes_from(*wish.first, todo.size());
   if (!nodes) return fail(nodes.error());
-  if (!context.errors.empty() || todo.empty()) return Value(slaves_table(context, all, {}));
+  if (context.errors.empty() && todo.empty())
+    context.errors.push_back(make_error(Errc::negative,
+                                        "no node-ID was given: no LSS slave without one answers",
+                                        "`lss scan --vendor V --product P` finds LSS slaves that have one"));
+  if (!context.errors.empty()) return Value(slaves_table(context, all, {}));
   if (const auto free = settings::refuse_taken(context, *nodes); !free) return fail(free.error());
   if (context.dry_run) return planned_lss_scan(todo, *nodes, keep);
   if (const auto sure = context.confirm(question_lss_scan(todo, *nodes)); !sure) return fail(sure.error());

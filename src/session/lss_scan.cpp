@@ -30,11 +30,14 @@ tl::unexpected<Error> lost_answer() {
       "late or lost answers, or a slave that was switched off: `lss scan` again, with a longer --patience");
 }
 
-tl::unexpected<Error> too_many() {
-  return fail(Errc::protocol,
-              "more than 127 identities are answered to: an LSS slave answers to whatever is asked",
+/// No patience mends it: the walk is not begun anew.
+tl::unexpected<Error> answers_all() {
+  return fail(Errc::negative, "an LSS slave answers to whatever identity is asked for",
               "switch one slave after the other off to find it");
 }
+
+/// Two vendor-IDs that are of no vendor.
+constexpr std::array<std::uint32_t, 2> kNobody{0x5A3C'96E1, 0xA5C3'691E};
 
 /// The end of the lower half of a range, and the beginning of the upper: by the revision, then by the serial
 /// number.
@@ -95,11 +98,24 @@ class FastscanWalk {
     return below ? Result<bool>(true) : fail(below.error());
   }
 
+  /// Who answers to everything seems to have the vendor-ID 0, and every other one.
+  Result<void> doubt_zero() {
+    std::size_t answered = 0;
+    for (const auto vendor : kNobody) {
+      const auto answers = probe({vendor, 0, 0, 0});
+      if (!answers) return fail(answers.error());
+      answered += *answers > 0 ? 1U : 0U;
+    }
+    return answered < kNobody.size() ? Result<void>() : answers_all();
+  }
+
   Result<void> on_number(std::uint8_t part, std::uint32_t number, std::size_t answers) {
+    if (part == 0 && number == 0)
+      if (const auto good = doubt_zero(); !good) return good;
     numbers_[part] = number;
     if (part == kLastPart) {
       found_.push_back({{numbers_[0], numbers_[1], numbers_[2], numbers_[3]}, answers, {}});
-      return found_.size() <= kMostSlaves ? Result<void>() : too_many();
+      return found_.size() <= kMostSlaves ? Result<void>() : answers_all();
     }
     if (const auto moved = advance(part); !moved) return moved;
     if (const auto done = walk_part(static_cast<std::uint8_t>(part + 1)); !done) return done;
@@ -193,7 +209,7 @@ Result<bool> LssDialogue::search_between(const LssAddress& low, const LssAddress
   if (*answers == 0) return false;
   if (low == high) {
     found.push_back(low);
-    return found.size() <= kMostSlaves ? Result<bool>(true) : too_many();
+    return found.size() <= kMostSlaves ? Result<bool>(true) : answers_all();
   }
   const auto [end, begin] = inner_ends(low, high);
   const auto first = search_between(low, end, pace, found);

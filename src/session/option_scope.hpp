@@ -40,6 +40,13 @@ class Deaf {
   Protection::Hold hold_;
 };
 
+/// Before something is begun that Ctrl-C does not end: Errc::interrupted where the user wants an end already,
+/// as a wait before it may have ended for that reason.
+inline Result<void> refuse_cancelled(Session& session) {
+  const auto& cancelled = session.options().cancelled;
+  return cancelled && cancelled() ? Result<void>(fail(Errc::interrupted, "interrupted")) : Result<void>();
+}
+
 /// While it lives the session waits no longer than this for one answer, and asks no more often.
 class Hurry {
  public:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "canopen/node_id.hpp"
+#include "canopen/node_list.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
 #include "session/scan.hpp"
@@ -34,7 +35,11 @@ class LssNodeRun {
   LssNodeOutcome run() {
     const bool stays = has_lss_node(*slave_, *change_);
     if (stays && !change_->keep) {
-      out_ = {.result = "nothing to do", .taken = true, .done = true, .kept = {}, .error = {}};
+      out_ = {.result = "nothing to do", .taken = true, .done = true, .strayed = {}, .kept = {}, .error = {}};
+      return std::move(out_);
+    }
+    if (const auto goes_on = session::refuse_cancelled(*session_); !goes_on) {
+      fail_with("not changed", goes_on.error());
       return std::move(out_);
     }
     {
@@ -118,6 +123,7 @@ class LssNodeRun {
     const auto identity = session::read_identity(*session_, change_->to);
     if (!identity && identity.error().code != Errc::timeout)
       return void(fail_with("set; not found", identity.error()));
+    if (!identity && find_elsewhere()) return;
     if (!identity)
       return void(fail_with(
           "set; not found",
@@ -130,8 +136,10 @@ class LssNodeRun {
     const auto other = [](const std::optional<std::uint32_t>& told, std::uint32_t wanted) {
       return told && *told != wanted;
     };
-    if (other(identity->vendor_id, a.vendor) || other(identity->product_code, a.product) ||
-        other(identity->revision, a.revision) || other(identity->serial, a.serial))
+    const bool is_other = other(identity->vendor_id, a.vendor) || other(identity->product_code, a.product) ||
+                          other(identity->revision, a.revision) || other(identity->serial, a.serial);
+    if (is_other && find_elsewhere()) return;
+    if (is_other)
       return void(
           fail_with("set; another answers",
                     drive_error(Errc::refused, change_->to,
@@ -140,6 +148,26 @@ class LssNodeRun {
                                 "`scan --long` shows who is there")));
     out_.done = true;
     out_.result = slave_->is_unconfigured() ? "node-ID given" : "moved";
+  }
+
+  /// A slave may confirm one node-ID and take another.
+  bool find_elsewhere() {
+    const auto all = session::scan(*session_, canopen::every_node_id());
+    if (!all) return all.error().code == Errc::interrupted && !fail_with("set; not looked for", all.error());
+    const auto& a = slave_->address;
+    const auto is_it = [&](const session::Identity& one) {
+      return one.node != change_->to && one.vendor_id == a.vendor && one.product_code == a.product &&
+             one.revision == a.revision && one.serial == a.serial;
+    };
+    const auto found = std::find_if(all->begin(), all->end(), is_it);
+    if (found == all->end()) return false;
+    out_.strayed = found->node;
+    return !fail_with(
+        "set; has another node-ID",
+        drive_error(Errc::protocol, found->node,
+                    fmt::format("the LSS slave confirmed node-ID {}, and answers as node {}", change_->to,
+                                found->node),
+                    fmt::format("`lss set-node {} -n {}` tries again", change_->to, found->node)));
   }
 
   /// It has no SDO then, and not every slave answers the question for those without a node-ID.

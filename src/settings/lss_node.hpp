@@ -32,17 +32,19 @@ std::string shared_lss_node(session::Session& session, const session::LssSlave& 
 
 /// What came of it.
 struct LssNodeOutcome {
-  std::string result;          ///< In words: `moved`, `node-ID given`, …
-  bool taken = false;          ///< The slave said that it has taken it.
-  bool done = false;           ///< The slave is found under its new node-ID.
-  std::optional<bool> kept;    ///< Whether it outlives power-off; empty where nobody knows.
-  std::optional<Error> error;  ///< What went wrong, and where the slave is as far as that is known.
+  std::string result;                   ///< In words: `moved`, `node-ID given`, …
+  bool taken = false;                   ///< The slave said that it has taken it.
+  bool done = false;                    ///< The slave is found under its new node-ID.
+  std::optional<std::uint8_t> strayed;  ///< It is found under another one than it has confirmed.
+  std::optional<bool> kept;             ///< Whether it outlives power-off; empty where nobody knows.
+  std::optional<Error> error;           ///< What went wrong, and where the slave is as far as that is known.
 };
 
 /// Gives the slave its node-ID (CiA 305, configure node-ID), stores it where that is wanted, and lets it
 /// start with it: one without a node-ID does so by itself when all go back to waiting, another by an NMT
-/// reset of its communication. Then it is looked for: its boot-up, and 1018h. Where storing fails, the old
-/// node-ID is written back. From the first request to the reset Ctrl-C is not heard. Nobody is asked.
+/// reset of its communication. Then it is looked for: its boot-up, and 1018h; where it is not found, under
+/// all other node-IDs. Where storing fails, the old node-ID is written back. From the first request to the
+/// reset Ctrl-C is not heard; behind Ctrl-C nothing is begun. Nobody is asked.
 LssNodeOutcome give_lss_node(show::Desk& desk, const session::LssSlave& slave, const LssNodeChange& change);
 
 }  // namespace servoctl::settings

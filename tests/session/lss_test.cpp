@@ -2,6 +2,7 @@
 #include <set>
 
 #include "lss_world.hpp"
+#include "scripted_bus.hpp"
 #include "session/can_network.hpp"
 
 namespace servoctl::session {
@@ -74,6 +75,26 @@ TEST_F(Lss, FindsEverySlaveWhateverSingleFrameIsLost) {
     ASSERT_EQ(scan(), 2U);
     ASSERT_TRUE(all_wait());
   }
+}
+
+TEST(LssLiar, ASlaveThatAnswersEverythingEndsTheScan) {
+  auto bus = std::make_unique<ScriptedBus>();
+  auto& wire = *bus;
+  wire.on_send = [](ScriptedBus& at, const std::string& sent) {
+    if (sent.starts_with("7E5#51") || sent.starts_with("7E5#4B")) at.arrive("7E4#4F00000000000000");
+  };
+  Session session(std::move(bus), "can0", Options{});
+  LssDialogue lss(session, 50ms);
+  const auto begin = session.now();
+  for (const bool by_identity : {false, true}) {
+    const auto found = by_identity ? lss.search({1, 2, 0, 0}, {1, 2, 0xFFFF'FFFF, 0xFFFF'FFFF}) : [&] {
+      const auto scanned = lss.scan();
+      return scanned ? Result<std::vector<LssAddress>>(std::vector<LssAddress>{}) : fail(scanned.error());
+    }();
+    ASSERT_FALSE(found);
+    EXPECT_EQ(found.error().message, "an LSS slave answers to whatever identity is asked for");
+  }
+  EXPECT_LT(session.now() - begin, 30s);
 }
 
 TEST_F(Lss, LeavesAllWaitingWhereverItIsInterrupted) {
@@ -193,7 +214,7 @@ TEST_F(Lss, ASlaveThatFitsEveryIdentityEndsTheScan) {
   LssDialogue lss(*session, 20ms);
   const auto found = lss.scan();
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().code, Errc::protocol);
+  EXPECT_EQ(found.error().code, Errc::negative);
 }
 
 /// CANopenNode's slaves do: they would be found for ever.

@@ -20,6 +20,7 @@ struct LssHooks {
   int lose_request = -1;
   int lose_answer = -1;
   std::function<void(can::Frame&)> change_answer = {};
+  std::function<void(can::Frame&)> change_request = {};
   std::function<void(int request)> before_request = {};
   std::function<void()> after_request = {};
   bool comes_back = false;  ///< When it is asked to.
@@ -36,7 +37,9 @@ class LssBus final : public can::Bus {
     if (frame.id != canopen::kLssRequest) return bus_->send(frame);
     const int number = hooks_->requests++;
     if (hooks_->before_request) hooks_->before_request(number);
-    const auto sent = number == hooks_->lose_request ? Result<void>() : bus_->send(frame);
+    auto changed = frame;
+    if (hooks_->change_request) hooks_->change_request(changed);
+    const auto sent = number == hooks_->lose_request ? Result<void>() : bus_->send(changed);
     if (hooks_->after_request) hooks_->after_request();
     return sent;
   }

@@ -84,6 +84,33 @@ TEST_F(LssNode, ThatIsNotTakenLeavesTheSlaveAsItWas) {
   EXPECT_EQ(cell.drives[0]->node(), 3);
 }
 
+TEST_F(LssNode, ASlaveThatConfirmsOneAndTakesAnotherIsFound) {
+  build("sv2@255?lss");
+  hooks.change_request = [](can::Frame& frame) {
+    if (frame.data[0] == 0x11 && frame.data[1] == 5) frame.data[1] = 6;
+  };
+  const auto outcome = give(5);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_FALSE(outcome.done);
+  EXPECT_EQ(outcome.strayed, 6);
+  EXPECT_EQ(outcome.error->message, "node 6: the LSS slave confirmed node-ID 5, and answers as node 6");
+}
+
+TEST_F(LssNode, BehindCtrlCNothingIsBegun) {
+  build("sv2@255?lss");
+  desk.session = session.get();
+  const LssNodeChange change{{}, 5, false};
+  const auto slave = look_at_lss_slave(desk, change);
+  ASSERT_TRUE(slave);
+  session->options().cancelled = [] { return true; };
+  const auto outcome = give_lss_node(desk, *slave, change);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_EQ(outcome.error->code, Errc::interrupted);
+  EXPECT_FALSE(outcome.taken);
+  session->options().cancelled = {};
+  EXPECT_TRUE(cell.drives[0]->node() != 5);
+}
+
 TEST_F(LssNode, ASlaveThatAcknowledgesAndDoesNotStartIsTold) {
   build("sv2@255?lss");
   desk.session = session.get();
