@@ -30,7 +30,7 @@ tl::unexpected<Error> lost_answer() {
       "late or lost answers, or a slave that was switched off: `lss scan` again, with a longer --patience");
 }
 
-/// No patience mends it: the walk is not begun anew.
+/// The walk is not repeated: patience does not help.
 tl::unexpected<Error> answers_all() {
   return fail(Errc::negative, "an LSS slave answers to whatever identity is asked for",
               "switch one slave after the other off to find it");

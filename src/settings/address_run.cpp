@@ -7,6 +7,7 @@
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
+#include "session/option_scope.hpp"
 #include "session/scan.hpp"
 #include "session/stretch.hpp"
 #include "settings/address_change.hpp"
@@ -38,6 +39,10 @@ class AddressRun {
   AddressOutcome run() {
     if (change_->idle()) {
       out_.end = AddressEnd::nothing_to_do;
+      return std::move(out_);
+    }
+    if (const auto goes_on = session::refuse_cancelled(*session_); !goes_on) {
+      fail_with(AddressEnd::as_before, goes_on.error());
       return std::move(out_);
     }
     if (change_->writes.empty() || write_address(*desk_, *change_, *options_, out_)) restart();

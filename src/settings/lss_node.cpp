@@ -7,6 +7,8 @@
 
 #include "canopen/node_id.hpp"
 #include "canopen/node_list.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/answer.hpp"
 #include "session/identify.hpp"
 #include "session/option_scope.hpp"
 #include "session/scan.hpp"
@@ -123,7 +125,14 @@ class LssNodeRun {
     const auto identity = session::read_identity(*session_, change_->to);
     if (!identity && identity.error().code != Errc::timeout)
       return void(fail_with("set; not found", identity.error()));
-    if (!identity && find_elsewhere()) return;
+    if (identity && is_slave(*identity)) {
+      out_.done = true;
+      out_.result = slave_->is_unconfigured() ? "node-ID given" : "moved";
+      return;
+    }
+    const auto elsewhere = other_node();
+    if (!elsewhere) return void(fail_with("set; not looked for", elsewhere.error()));
+    if (*elsewhere) return tell_strayed(**elsewhere);
     if (!identity)
       return void(fail_with(
           "set; not found",
@@ -132,42 +141,55 @@ class LssNodeRun {
               change_->keep
                   ? "some start with it only when they are switched off and on, or by `nmt reset-comm -n all`, which resets all nodes"
                   : "some start with it only by `nmt reset-comm -n all`, which resets all nodes; what is not stored is lost with the power")));
-    const auto& a = slave_->address;
-    const auto other = [](const std::optional<std::uint32_t>& told, std::uint32_t wanted) {
-      return told && *told != wanted;
-    };
-    const bool is_other = other(identity->vendor_id, a.vendor) || other(identity->product_code, a.product) ||
-                          other(identity->revision, a.revision) || other(identity->serial, a.serial);
-    if (is_other && find_elsewhere()) return;
-    if (is_other)
-      return void(
-          fail_with("set; another answers",
-                    drive_error(Errc::refused, change_->to,
-                                "the drive that answers by this node-ID has another identity (1018h) than "
-                                "the LSS slave that was given it",
-                                "`scan --long` shows who is there")));
-    out_.done = true;
-    out_.result = slave_->is_unconfigured() ? "node-ID given" : "moved";
+    fail_with("set; another answers",
+              drive_error(Errc::refused, change_->to,
+                          "the drive that answers by this node-ID has another identity (1018h) than "
+                          "the LSS slave that was given it",
+                          "`scan --long` shows who is there"));
   }
 
-  /// A slave may confirm one node-ID and take another.
-  bool find_elsewhere() {
-    const auto all = session::scan(*session_, canopen::every_node_id());
-    if (!all) return all.error().code == Errc::interrupted && !fail_with("set; not looked for", all.error());
+  /// What it does not tell may be the same.
+  bool is_slave(const session::Identity& identity) const {
     const auto& a = slave_->address;
-    const auto is_it = [&](const session::Identity& one) {
-      return one.node != change_->to && one.vendor_id == a.vendor && one.product_code == a.product &&
-             one.revision == a.revision && one.serial == a.serial;
+    const auto same = [](const std::optional<std::uint32_t>& told, std::uint32_t wanted) {
+      return !told || *told == wanted;
     };
-    const auto found = std::find_if(all->begin(), all->end(), is_it);
-    if (found == all->end()) return false;
-    out_.strayed = found->node;
-    return !fail_with(
-        "set; has another node-ID",
-        drive_error(Errc::protocol, found->node,
-                    fmt::format("the LSS slave confirmed node-ID {}, and answers as node {}", change_->to,
-                                found->node),
-                    fmt::format("`lss set-node {} -n {}` tries again", change_->to, found->node)));
+    return same(identity.vendor_id, a.vendor) && same(identity.product_code, a.product) &&
+           same(identity.revision, a.revision) && same(identity.serial, a.serial);
+  }
+
+  /// A slave may confirm one node-ID and take another: the node, neither the old nor the new one, that has
+  /// its identity. Nodes are asked for 1018h alone, and for a number of it only where those before it agree.
+  Result<std::optional<std::uint8_t>> other_node() {
+    const session::OptionScope once(*session_, &session::Options::retries, 0U);
+    const auto& a = slave_->address;
+    std::vector<std::uint8_t> left;
+    for (const auto node : canopen::every_node_id())
+      if (node != change_->to && node != slave_->node) left.push_back(node);
+    for (const auto& [object, number] :
+         {std::pair(objects::kVendorId, a.vendor), std::pair(objects::kProductCode, a.product),
+          std::pair(objects::kRevision, a.revision), std::pair(objects::kSerialNumber, a.serial)}) {
+      std::vector<session::SdoRequest> requests;
+      for (const auto node : left) requests.push_back({node, object, {}});
+      const auto answers = session_->transfer(requests);
+      std::vector<std::uint8_t> agree;
+      for (std::size_t i = 0; i < answers.size(); ++i) {
+        const auto code = answers[i] ? Errc::negative : answers[i].error().code;
+        if (code == Errc::bus || code == Errc::interrupted) return fail(answers[i].error());
+        if (session::u32_in(answers[i]) == number) agree.push_back(left[i]);
+      }
+      left = std::move(agree);
+    }
+    return left.empty() ? std::optional<std::uint8_t>() : left.front();
+  }
+
+  void tell_strayed(std::uint8_t node) {
+    out_.strayed = node;
+    fail_with("set; has another node-ID",
+              drive_error(
+                  Errc::protocol, node,
+                  fmt::format("it has the identity of the LSS slave that confirmed node-ID {}", change_->to),
+                  fmt::format("`lss set-node {} -n {}` tries again", change_->to, node)));
   }
 
   /// It has no SDO then, and not every slave answers the question for those without a node-ID.

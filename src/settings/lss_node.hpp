@@ -42,9 +42,9 @@ struct LssNodeOutcome {
 
 /// Gives the slave its node-ID (CiA 305, configure node-ID), stores it where that is wanted, and lets it
 /// start with it: one without a node-ID does so by itself when all go back to waiting, another by an NMT
-/// reset of its communication. Then it is looked for: its boot-up, and 1018h; where it is not found, under
-/// all other node-IDs. Where storing fails, the old node-ID is written back. From the first request to the
-/// reset Ctrl-C is not heard; behind Ctrl-C nothing is begun. Nobody is asked.
+/// reset of its communication. Then it is looked for: its boot-up, and 1018h; where it is not found, by its
+/// identity under all other node-IDs. Where storing fails, the old node-ID is written back. From the first
+/// request to the reset Ctrl-C is not heard; after Ctrl-C nothing is written. Nobody is asked.
 LssNodeOutcome give_lss_node(show::Desk& desk, const session::LssSlave& slave, const LssNodeChange& change);
 
 }  // namespace servoctl::settings

@@ -69,6 +69,19 @@ TEST(AddressChange, ALockedParameterNamesThePassword) {
   EXPECT_EQ(world.held(0, "Fn_9A"), 3U);
 }
 
+TEST(AddressChange, AfterCtrlCNothingIsWritten) {
+  AddressWorld world("gsd600", {3});
+  const auto change = plan_address(world.desk, 3, {.node = 5});
+  ASSERT_TRUE(change) << change.error().message;
+  world.session->options().cancelled = [] { return true; };
+  world.sent.clear();
+  const auto outcome = change_address(world.desk, *change, {});
+  EXPECT_EQ(outcome.end, AddressEnd::as_before);
+  ASSERT_TRUE(outcome.error);
+  EXPECT_EQ(outcome.error->code, Errc::interrupted);
+  EXPECT_TRUE(world.sent.empty()) << world.sent.front();
+}
+
 TEST(AddressChange, TheNodeThatItHasAlreadyIsNothingToDo) {
   AddressWorld world("gsd600", {3});
   const auto outcome = move_to(world, 3, 3);

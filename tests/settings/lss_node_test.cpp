@@ -93,10 +93,10 @@ TEST_F(LssNode, ASlaveThatConfirmsOneAndTakesAnotherIsFound) {
   ASSERT_TRUE(outcome.error);
   EXPECT_FALSE(outcome.done);
   EXPECT_EQ(outcome.strayed, 6);
-  EXPECT_EQ(outcome.error->message, "node 6: the LSS slave confirmed node-ID 5, and answers as node 6");
+  EXPECT_EQ(outcome.error->message, "node 6: it has the identity of the LSS slave that confirmed node-ID 5");
 }
 
-TEST_F(LssNode, BehindCtrlCNothingIsBegun) {
+TEST_F(LssNode, AfterCtrlCNothingIsWritten) {
   build("sv2@255?lss");
   desk.session = session.get();
   const LssNodeChange change{{}, 5, false};
