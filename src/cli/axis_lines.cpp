@@ -6,7 +6,7 @@
 #include "base/found_file.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "session/open_bus.hpp"
+#include "cli/bus_choice.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -41,31 +41,57 @@ Result<void> check_counts(const Cabinet& cabinet, const Axis& axis, const comman
               fmt::format("leave {} out, or change the file", option));
 }
 
-/// What is typed beside the name of an axis must not say otherwise than the file.
-Result<void> check_typed(const Cabinet& cabinet, const Axis& axis, const command::Arguments& arguments) {
-  const auto file = cabinet.file.filename().string();
-  const auto& bus = *cabinet.bus(axis.bus);
-  const auto typed_bus = arguments.text("--bus");
-  if (!typed_bus.empty() && typed_bus != bus.name &&
-      session::canonical_url(std::string(typed_bus)) != session::canonical_url(bus.url))
-    return fail(
-        Errc::usage,
-        fmt::format("{} is on bus {} ({}) by {}, not on {}", axis.name, bus.name, bus.url, file, typed_bus),
-        "leave --bus out, or change the file");
-  const auto typed_drive = arguments.text("--drive");
-  if (!typed_drive.empty() && typed_drive != axis.family)
-    return fail(Errc::usage, fmt::format("{} is {} by {}, not {}", axis.name, axis.family, file, typed_drive),
-                "leave --drive out, or change the file");
-  if (const auto turn = check_counts(cabinet, axis, arguments, "turn", axis.turn); !turn) return turn;
-  return check_counts(cabinet, axis, arguments, "encoder", axis.encoder);
+/// How to get rid of a setting that contradicts the file.
+std::string without(Source source, std::string_view option) {
+  return source == Source::environment ? fmt::format("unset {}", name_of(source, option))
+                                       : fmt::format("leave {} out", option);
+}
+
+/// A line, and where it names the axes that it is for.
+struct Named {
+  const Cabinet* cabinet;
+  const command::Arguments* arguments;
+  const Settings* settings;
+  Source from;
+  std::vector<std::string>* notices;
+};
+
+/// Of what is given beside an axis: `is` is what the file says of it, `given` the value of `option`.
+Result<void> weigh(const Named& named, const Axis& axis, Source from, std::string_view option,
+                   const std::string& is, const std::string& wanted) {
+  const auto file = named.cabinet->file.filename().string();
+  const auto& given = option == "--bus" ? named.settings->bus : named.settings->drive;
+  if (from >= named.from)
+    return fail(Errc::usage, fmt::format("{} is {} by {}, not {}", axis.name, is, file, wanted),
+                fmt::format("{}, or change the file", without(from, option)));
+  add_once(*named.notices,
+           fmt::format("{} ({}) is not used: {} says it of each axis", name_of(from, option), given, file));
+  return {};
+}
+
+/// What is given beside an axis must not say otherwise than the file, unless the line is stronger.
+Result<void> check_given(const Named& named, const Axis& axis) {
+  const auto& settings = *named.settings;
+  const auto& bus = *named.cabinet->bus(axis.bus);
+  if (!settings.bus.empty() && bus_given(*named.cabinet, settings.bus) != &bus)
+    if (const auto right = weigh(named, axis, settings.bus_from, "--bus",
+                                 fmt::format("on bus {} ({})", bus.name, bus.url), "on " + settings.bus);
+        !right)
+      return right;
+  if (!settings.drive.empty() && settings.drive != axis.family)
+    if (const auto right = weigh(named, axis, settings.drive_from, "--drive", axis.family, settings.drive);
+        !right)
+      return right;
+  if (const auto turn = check_counts(*named.cabinet, axis, *named.arguments, "turn", axis.turn); !turn)
+    return turn;
+  return check_counts(*named.cabinet, axis, *named.arguments, "encoder", axis.encoder);
 }
 
 /// Axes of one bus and family go together; those that come first in the file go first.
-Result<std::vector<LinePart>> parts_by_axis(const Cabinet& cabinet, const std::vector<const Axis*>& axes,
-                                            const command::Arguments& arguments, const Settings& settings) {
+Result<std::vector<LinePart>> parts_by_axis(const Named& named, const std::vector<const Axis*>& axes) {
   std::vector<LinePart> out;
   for (const auto* axis : axes) {
-    if (const auto fits = check_typed(cabinet, *axis, arguments); !fits) return fail(fits.error());
+    if (const auto fits = check_given(named, *axis); !fits) return fail(fits.error());
     const auto same = std::find_if(out.begin(), out.end(), [&](const LinePart& part) {
       return part.axes.front()->bus == axis->bus && part.axes.front()->family == axis->family;
     });
@@ -73,7 +99,7 @@ Result<std::vector<LinePart>> parts_by_axis(const Cabinet& cabinet, const std::v
       same->axes.push_back(axis);
       continue;
     }
-    out.push_back(on_bus(cabinet, settings, *cabinet.bus(axis->bus)));
+    out.push_back(on_bus(*named.cabinet, *named.settings, *named.cabinet->bus(axis->bus)));
     out.back().axes.push_back(axis);
     out.back().settings.drive = axis->family;
   }
@@ -81,17 +107,31 @@ Result<std::vector<LinePart>> parts_by_axis(const Cabinet& cabinet, const std::v
   return out;
 }
 
+/// Beside a file that was named, `all` are the axes that it has on the bus.
+bool means_axes(const command::Command& command, const Settings& settings) {
+  const bool file_named =
+      settings.cabinet_from != Source::folder && settings.cabinet_from >= settings.bus_from;
+  return file_named && equals_nocase(settings.nodes, "all") && includes(command.needs, Needs::node) &&
+         !command.to_all;
+}
+
 /// Numbers on one bus: those that are axes are what the file says.
-Result<std::vector<LinePart>> parts_by_number(const Cabinet& cabinet, const cabinet::Bus& bus,
-                                              const command::Arguments& arguments, const Settings& settings) {
-  const bool numbers = !settings.nodes.empty() && !equals_nocase(settings.nodes, "all");
-  const auto nodes = numbers ? parse_nodes(settings.nodes) : Result<std::vector<std::uint8_t>>();
-  if (!nodes) return fail(nodes.error());
+Result<std::vector<LinePart>> parts_by_number(const Named& named, const command::Command& command,
+                                              const cabinet::Bus& bus) {
+  const auto& [cabinet, arguments, settings, from, notices] = named;
   std::vector<const Axis*> axes;
+  if (means_axes(command, *settings) && !settings->bus.empty()) {
+    for (const auto& axis : cabinet->axes)
+      if (axis.bus == bus.name) axes.push_back(&axis);
+    return parts_by_axis(named, axes);
+  }
+  const bool numbers = !settings->nodes.empty() && !equals_nocase(settings->nodes, "all");
+  const auto nodes = numbers ? parse_nodes(settings->nodes) : Result<std::vector<std::uint8_t>>();
+  if (!nodes) return fail(nodes.error());
   for (const auto node : *nodes)
-    if (const auto* axis = cabinet.at(bus.name, node)) axes.push_back(axis);
-  if (!axes.empty() && axes.size() == nodes->size()) return parts_by_axis(cabinet, axes, arguments, settings);
-  return std::vector{on_bus(cabinet, settings, bus)};
+    if (const auto* axis = cabinet->at(bus.name, node)) axes.push_back(axis);
+  if (!axes.empty() && axes.size() == nodes->size()) return parts_by_axis(named, axes);
+  return std::vector{on_bus(*cabinet, *settings, bus)};
 }
 
 /// A file that lies in some folder above must not decide where a line without a name writes or moves.
@@ -145,6 +185,8 @@ LinePart on_bus(const Cabinet& cabinet, const Settings& settings, const cabinet:
   out.settings.bus = bus.url;
   out.settings.of_cabinet = true;
   out.settings.names = names_on(cabinet, bus.name);
+  for (const auto& axis : cabinet.axes)
+    if (axis.bus == bus.name) out.on_bus.push_back(&axis);
   return out;
 }
 
@@ -169,26 +211,31 @@ std::vector<std::string> with_axis_option(std::vector<std::string> words, const 
 }
 
 Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Command& command,
-                                       const command::Arguments& arguments, const Settings& settings) {
+                                       const command::Arguments& arguments, const Settings& settings,
+                                       std::vector<std::string>& notices) {
+  Named named{&cabinet, &arguments, &settings, settings.nodes_from, &notices};
   if (names_axes(settings.nodes)) {
     const auto axes = cabinet.select(settings.nodes);
     if (!axes) return fail(axes.error());
-    return parts_by_axis(cabinet, *axes, arguments, settings);
+    return parts_by_axis(named, *axes);
   }
-  if (const auto* bus = cabinet.bus(settings.bus)) return parts_by_number(cabinet, *bus, arguments, settings);
+  named.from =
+      settings.bus.empty() ? settings.cabinet_from : std::max(settings.cabinet_from, settings.bus_from);
+  if (const auto* bus = cabinet.bus(settings.bus)) return parts_by_number(named, command, *bus);
   if (!settings.bus.empty() || !includes(command.needs, Needs::bus)) return std::vector<LinePart>();
   // Simulated drives do not go where the real ones are unless somebody says so.
   if (command.opens_bus) return std::vector<LinePart>();
   if (equals_nocase(settings.nodes, "all") && includes(command.needs, Needs::node) && !command.to_all) {
     const auto axes = cabinet.select("all");
     if (!axes) return fail(axes.error());
-    return parts_by_axis(cabinet, *axes, arguments, settings);
+    named.from = settings.nodes_from;
+    return parts_by_axis(named, *axes);
   }
   if (cabinet.buses.size() == 1) {
     const auto& bus = cabinet.buses.front();
     if (const auto plain = check_plain(cabinet, bus, command, arguments, settings); !plain)
       return fail(plain.error());
-    return parts_by_number(cabinet, bus, arguments, settings);
+    return parts_by_number(named, command, bus);
   }
   std::vector<LinePart> out;
   for (const auto& bus : cabinet.buses) out.push_back(on_bus(cabinet, settings, bus));

@@ -32,6 +32,7 @@ class CabinetHolder {
 struct LinePart {
   Settings settings;  ///< Bus, nodes and family are those of the axes, and so is what they are called.
   std::vector<const cabinet::Axis*> axes;
+  std::vector<const cabinet::Axis*> on_bus = {};  ///< All that the file has on this bus.
 };
 
 /// The settings on a bus of the cabinet, which says what its nodes are called.
@@ -46,9 +47,11 @@ std::vector<std::string> with_axis_option(std::vector<std::string> words, const 
                                           std::size_t after, const cabinet::Cabinet& cabinet);
 
 /// The parts of a line; none where it concerns no cabinet: its bus is given, and its nodes are numbers.
-/// Errc::usage for an axis that is not there, and where the line says another bus or family than the file.
+/// Errc::usage for an axis that is not there, and where a source at least as strong as the one that names the
+/// axes says another bus or family than the file. Weaker ones lose, which `notices` say.
 Result<std::vector<LinePart>> parts_of(const cabinet::Cabinet& cabinet, const command::Command& command,
-                                       const command::Arguments& arguments, const Settings& settings);
+                                       const command::Arguments& arguments, const Settings& settings,
+                                       std::vector<std::string>& notices);
 
 /// An option that the file says, and the key under which it does: `--limit`, `limits.speed`.
 struct OptionOfAxis {

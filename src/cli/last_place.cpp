@@ -1,6 +1,7 @@
 #include "cli/last_place.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
@@ -17,13 +18,21 @@
 namespace servoctl::cli {
 namespace {
 
-constexpr std::uint64_t kPlaceVersion = 1;
-constexpr std::uintmax_t kMostPlaceBytes = 1U << 16U;
+constexpr std::uint64_t kPlaceVersion = 2;
+/// The same for all folders, and so for none.
+constexpr std::uint64_t kWithoutFolders = 1;
+constexpr std::size_t kMostPlaces = 50;
+constexpr std::uintmax_t kMostPlaceBytes = 1U << 18U;
 
 /// The cabinet file in use; null where there is none that can be read.
 const cabinet::Cabinet* cabinet_in_use(Shell& shell) {
   const auto cabinet = shell.cabinet(shell.defaults());
   return cabinet ? *cabinet : nullptr;
+}
+
+std::string folder_now() {
+  std::error_code error;
+  return std::filesystem::current_path(error).string();
 }
 
 std::string file_of(const cabinet::Cabinet& cabinet) {
@@ -62,13 +71,18 @@ std::string in_words(const LastPlace& place, bool chinese) {
 
 void tell(Shell& shell, const std::string& text) { shell.console().note("notice: " + text + "\n"); }
 
-/// Another folder may have another cabinet file, with the same names for other drives.
+/// A cabinet file in use is stronger than what was remembered; another one may have the same names for other
+/// drives.
 Result<void> check_cabinet(Shell& shell, const LastPlace& place) {
-  if (place.cabinet.empty() && !names_axes(place.nodes)) return {};
-  const auto* cabinet = cabinet_in_use(shell);
-  if (cabinet != nullptr && file_of(*cabinet) == place.cabinet) return {};
-  return fail(Errc::usage,
-              cabinet == nullptr ? "no cabinet file is in use here" : "the cabinet file is another one");
+  const auto known = shell.cabinet(shell.defaults());
+  if (!known) return fail(known.error());
+  const auto* cabinet = *known;
+  const bool none_meant = place.cabinet.empty() && !names_axes(place.nodes);
+  if (cabinet == nullptr)
+    return none_meant ? Result<void>() : fail(Errc::usage, "no cabinet file is in use here");
+  if (none_meant) return fail(Errc::usage, fmt::format("{} is in use here", cabinet->file.string()));
+  if (file_of(*cabinet) == place.cabinet) return {};
+  return fail(Errc::usage, "the cabinet file is another one");
 }
 
 /// Why the prompt cannot be there.
@@ -82,6 +96,8 @@ Result<void> go_to(Shell& shell, const LastPlace& place) {
     if (!now) return fail(now.error());
     settings = std::move(*now);
   }
+  // An option and the environment come before what is remembered.
+  settings.bus_from = settings.nodes_from = settings.drive_from = Source::folder;
   // What was an interface is none of a cabinet's buses, though one may have its name.
   const bool was_interface = place.cabinet.empty() && !is_url(place.bus);
   if (!place.bus.empty() && (was_interface || opens_silently(shell, place.bus))) {
@@ -94,36 +110,61 @@ Result<void> go_to(Shell& shell, const LastPlace& place) {
 
 }  // namespace
 
-Result<std::optional<LastPlace>> LastPlaceFile::read() const {
+Result<std::vector<LastPlace>> LastPlaceFile::read_all() const {
   const RegularFilesOnly regular;
   std::error_code error;
-  if (!std::filesystem::exists(std::filesystem::symlink_status(path_, error)))
-    return std::optional<LastPlace>();
+  std::vector<LastPlace> out;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(path_, error))) return out;
   const auto text = read_file(path_, kMostPlaceBytes);
   if (!text) return fail(text.error());
   const auto document = report::parse_json(*text, path_.string());
   if (!document) return fail(document.error());
   show::FieldReader fields(*document, path_.string());
-  if (fields.number("servoctl_prompt", true).value_or(kPlaceVersion) != kPlaceVersion)
-    fields.refuse("servoctl_prompt");
-  LastPlace out{.bus = fields.text("bus"),
-                .nodes = fields.text("nodes"),
-                .drive = fields.text("drive"),
-                .cabinet = fields.text("cabinet"),
-                .time = fields.text("time", true)};
-  if (fields.error())
-    return fail(Errc::file, *fields.error(), "delete the file; it only remembers where the prompt was");
-  return std::optional(std::move(out));
+  const auto version = fields.number("servoctl_prompt", true).value_or(kPlaceVersion);
+  if (version == kWithoutFolders) return out;
+  const auto* places = report::find(*document, "places");
+  const auto* list = places == nullptr ? nullptr : std::get_if<report::List>(&places->data());
+  if (version != kPlaceVersion) fields.refuse("servoctl_prompt");
+  if (list == nullptr) fields.refuse("places");
+  auto wrong = fields.error();
+  for (std::size_t i = 0; list != nullptr && !wrong && i < std::min(list->size(), kMostPlaces); ++i) {
+    show::FieldReader place((*list)[i], path_.string());
+    out.push_back({.folder = place.text("folder", true),
+                   .bus = place.text("bus"),
+                   .nodes = place.text("nodes"),
+                   .drive = place.text("drive"),
+                   .cabinet = place.text("cabinet"),
+                   .time = place.text("time", true)});
+    wrong = place.error();
+  }
+  if (wrong) return fail(Errc::file, *wrong, "delete the file; it only remembers where the prompt was");
+  return out;
 }
 
+Result<std::optional<LastPlace>> LastPlaceFile::read(const std::string& folder) const {
+  auto all = read_all();
+  if (!all) return fail(all.error());
+  for (auto& place : *all)
+    if (place.folder == folder) return std::optional(std::move(place));
+  return std::optional<LastPlace>();
+}
+
+/// The last one first; one that is damaged is replaced.
 Result<void> LastPlaceFile::write(const LastPlace& place) const {
   const RegularFilesOnly regular;
-  const report::Record document{{"servoctl_prompt", kPlaceVersion},
-                                {"bus", report::text_or_null(place.bus)},
-                                {"nodes", report::text_or_null(place.nodes)},
-                                {"drive", report::text_or_null(place.drive)},
-                                {"cabinet", report::text_or_null(place.cabinet)},
-                                {"time", place.time}};
+  auto all = read_all().value_or(std::vector<LastPlace>());
+  std::erase_if(all, [&](const LastPlace& one) { return one.folder == place.folder; });
+  all.insert(all.begin(), place);
+  if (all.size() > kMostPlaces) all.resize(kMostPlaces);
+  report::List places;
+  for (const auto& one : all)
+    places.emplace_back(report::Record{{"folder", one.folder},
+                                       {"bus", report::text_or_null(one.bus)},
+                                       {"nodes", report::text_or_null(one.nodes)},
+                                       {"drive", report::text_or_null(one.drive)},
+                                       {"cabinet", report::text_or_null(one.cabinet)},
+                                       {"time", one.time}});
+  const report::Record document{{"servoctl_prompt", kPlaceVersion}, {"places", std::move(places)}};
   return write_own_file(path_, report::to_json(document) + "\n");
 }
 
@@ -132,7 +173,7 @@ void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   const auto& now = shell.defaults();
   const bool told = !now.bus.empty() || !now.nodes.empty() || !now.drive.empty();
   if (told || state_folder.empty()) return;
-  const auto last = LastPlaceFile(state_folder).read();
+  const auto last = LastPlaceFile(state_folder).read(folder_now());
   if (!last) {
     auto text = last.error().message;
     if (!last.error().hint.empty()) append(text, last.error().hint, "; ");
@@ -166,7 +207,8 @@ void keep_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   const auto drive = is_file ? std::filesystem::canonical(now.drive, error).string() : now.drive;
   // Where the prompt was is worth no word when it cannot be kept.
   (void)LastPlaceFile(state_folder)
-      .write({now.bus, nodes, drive, cabinet == nullptr ? "" : file_of(*cabinet), utc_now_text()});
+      .write(
+          {folder_now(), now.bus, nodes, drive, cabinet == nullptr ? "" : file_of(*cabinet), utc_now_text()});
 }
 
 }  // namespace servoctl::cli

@@ -113,7 +113,7 @@ void LastWrite::look(const command::Command& command, const command::Arguments& 
                   .bus = settings.bus,
                   .place = place_,
                   .drive = settings.drive,
-                  .by_axis = !context.axes.empty() && (settings.nodes_typed || names_axes(place_)),
+                  .by_axis = !context.axes.empty() && (settings.nodes_typed() || names_axes(place_)),
                   .of_cabinet = settings.of_cabinet,
                   .names = settings.names,
                   .keep = arguments.has("--keep"),

@@ -26,6 +26,7 @@
 #include "cli/terminal/console.hpp"
 #include "cli/terminal/pager.hpp"
 #include "cli/terminal/prompt.hpp"
+#include "cli/terminal/prompt_words.hpp"
 #include "cli/terminal/signals.hpp"
 #include "cli/words.hpp"
 #include "show/output_file.hpp"
@@ -74,12 +75,16 @@ int run_pipe(Shell& shell) {
 
 /// Options without a command hold for all lines that follow. They are read as those of the command that needs
 /// nothing else.
-Result<Settings> settings_for_lines(const Settings& defaults, std::vector<std::string> words) {
+Result<Settings> settings_for_lines(Shell& shell, std::vector<std::string> words) {
   if (const auto known = check_options_alone(words); !known) return fail(known.error());
   words.emplace_back("help");
   const auto parsed = parse_line(words);
   if (!parsed) return fail(parsed.error());
-  return apply_options(defaults, parsed->arguments);
+  auto applied = apply_options(shell.defaults(), parsed->arguments);
+  if (!applied) return applied;
+  shell.console().set_chinese(applied->chinese);
+  shell.console().set_quiet(applied->quiet);
+  return shell.settings_for_lines(std::move(*applied));
 }
 
 /// The trace of all lines.
@@ -144,18 +149,17 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
     return run_batch(shell, is_run_of_input ? as_run(words, first) : words, standard_text);
   }
   if (first < words.size() || asks_for_help(words)) return run_one(shell, words, console);
-  auto settings = settings_for_lines(shell.defaults(), words);
+  auto settings = settings_for_lines(shell, words);
   if (!settings) return shell.report_error(settings.error(), false);
   const bool traces = settings->trace != shell.defaults().trace;
   shell.defaults() = std::move(*settings);
   if (const auto may = traces ? may_trace(shell) : Result<void>(); !may)
     return shell.report_error(may.error(), false);
-  console.set_chinese(shell.defaults().chinese);
   console.set_colour(shell.defaults().colour);
   if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell);
   if (shell.defaults().bus.empty())
     take_last_place(shell, shell.state_folder());
-  else if (const auto opened = shell.open(shell.defaults()); !opened)
+  else if (const auto opened = open_chosen_bus(shell, shell.defaults()); !opened)
     return shell.report_error(opened.error(), false);
   return run_prompt(shell, console, !refuses_pager(words) && wants_pages());
 }

@@ -1,6 +1,7 @@
 #include "cli/settings.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 #include <cstdlib>
 
 #include "base/duration.hpp"
@@ -31,6 +32,21 @@ void apply_form(Settings& settings, const command::Arguments& arguments) {
 }
 
 }  // namespace
+
+void Settings::keep_for_lines() {
+  for (auto* from : {&bus_from, &nodes_from, &drive_from, &cabinet_from})
+    *from = std::min(*from, Source::set);
+}
+
+std::string name_of(Source source, std::string_view option) {
+  switch (source) {
+    case Source::line: return std::string(option);
+    case Source::set: return fmt::format("an earlier {}", option);
+    case Source::environment: return "$SERVOCTL_" + upper(option.substr(2));
+    case Source::folder: break;
+  }
+  return "the current folder";
+}
 
 bool wants_json(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size() && words[i] != "--"; ++i) {
@@ -68,20 +84,22 @@ Settings settings_from_environment() {
   out.nodes = variable("SERVOCTL_NODE");
   out.drive = variable("SERVOCTL_DRIVE");
   out.cabinet = variable("SERVOCTL_CABINET");
+  if (!out.cabinet.empty()) out.cabinet_from = Source::environment;
   const auto language = variable("SERVOCTL_LANG");
   out.chinese = language.empty() ? variable("LANG").starts_with("zh") : language == "zh";
   return out;
 }
 
 Result<Settings> apply_options(Settings base, const command::Arguments& arguments) {
-  const auto text = [&](std::string_view name, std::string& into) {
-    if (arguments.has(name)) into = std::string(arguments.text(name));
+  const auto text = [&](std::string_view name, auto& into, Source& from) {
+    if (!arguments.has(name)) return;
+    into = std::string(arguments.text(name));
+    from = Source::line;
   };
-  text("--bus", base.bus);
-  text("--node", base.nodes);
-  base.nodes_typed = arguments.has("--node");
-  text("--drive", base.drive);
-  base.drive_typed = arguments.has("--drive");
+  text("--bus", base.bus, base.bus_from);
+  text("--node", base.nodes, base.nodes_from);
+  text("--drive", base.drive, base.drive_from);
+  text("--cabinet", base.cabinet, base.cabinet_from);
   if (arguments.has("--timeout")) {
     const auto timeout = read_duration(arguments.text("--timeout"));
     if (!timeout || *timeout == Duration::zero())
@@ -108,7 +126,6 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
   base.force_family = base.force_family || arguments.has("--force-family");
   base.read_only = base.read_only || arguments.has("--read-only");
   base.dry_run = base.dry_run || arguments.has("--dry-run");
-  if (arguments.has("--cabinet")) base.cabinet = std::string(arguments.text("--cabinet"));
   if (arguments.has("--trace")) base.trace = std::string(arguments.text("--trace"));
   return base;
 }

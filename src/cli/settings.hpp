@@ -14,13 +14,24 @@
 
 namespace servoctl::cli {
 
+/// Where a setting was made, the weakest first. A stronger source wins; two of the same strength must not
+/// contradict each other.
+enum class Source : std::uint8_t {
+  folder,       ///< Found from the current folder, or nowhere.
+  environment,  ///< $SERVOCTL_…
+  set,          ///< By the prompt, a batch file, or options for several lines.
+  line,         ///< An option of this line.
+};
+
 /// What holds for one command line: its global options over what the prompt has set over the environment.
 struct Settings {
-  std::string bus;           ///< URL; empty: none given.
-  std::string nodes;         ///< As written: `1,3,5-8`, `all`; empty: none given.
-  bool nodes_typed = false;  ///< In the line itself, not by `use` or the environment.
-  std::string drive;         ///< Family or file; empty: none given.
-  bool drive_typed = false;  ///< In the line itself.
+  std::string bus;    ///< URL; empty: none given.
+  std::string nodes;  ///< As written: `1,3,5-8`, `all`; empty: none given.
+  std::string drive;  ///< Family or file; empty: none given.
+  Source bus_from = Source::environment;
+  Source nodes_from = Source::environment;
+  Source drive_from = Source::environment;
+  Source cabinet_from = Source::folder;
   Duration timeout = std::chrono::milliseconds(500);
   std::uint32_t retries = 1;
   bool json = false;
@@ -38,6 +49,11 @@ struct Settings {
   bool of_cabinet = false;        ///< Bus, nodes and family are those of axes: other buses stay open.
   show::AxisNames names;          ///< Of the nodes of the bus.
 
+  bool nodes_typed() const { return nodes_from == Source::line; }
+  bool drive_typed() const { return drive_from == Source::line; }
+  /// What one line said holds for the lines that follow, too.
+  void keep_for_lines();
+
   /// Whether results, errors and notices are text in Chinese. In JSON only names from data are.
   bool shows_chinese() const { return chinese && !json; }
 };
@@ -45,6 +61,9 @@ struct Settings {
 /// Defaults from $SERVOCTL_BUS, $SERVOCTL_NODE, $SERVOCTL_DRIVE, $SERVOCTL_CABINET and $SERVOCTL_LANG (or a
 /// Chinese $LANG).
 Settings settings_from_environment();
+
+/// What a setting of this source is called: `--bus`, `$SERVOCTL_BUS`, `the prompt`; `option` is `--bus`.
+std::string name_of(Source source, std::string_view option);
 
 /// What the words say of it, in a line that may be wrong elsewhere.
 bool wants_json(const std::vector<std::string>& words);

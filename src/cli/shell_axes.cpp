@@ -8,6 +8,7 @@
 #include "base/text.hpp"
 #include "cabinet/station.hpp"
 #include "can/socketcan.hpp"
+#include "cli/bus_choice.hpp"
 #include "cli/shell.hpp"
 #include "session/gateway_network.hpp"
 #include "session/open_bus.hpp"
@@ -27,6 +28,25 @@ using report::Value;
 /// A word without a colon that is no interface may be the name of a bus in the cabinet.
 bool may_name_bus(const std::string& bus) {
   return !bus.empty() && bus.find(':') == std::string::npos && !can::is_interface(bus);
+}
+
+/// Both are given, and the bus is not the stronger one.
+bool file_rivals_bus(const Settings& settings) {
+  return !settings.bus.empty() && settings.cabinet_from != Source::folder &&
+         settings.cabinet_from >= settings.bus_from;
+}
+
+/// `-n all` beside a cabinet file means its axes only where the line goes by the file.
+void tell_all_of_bus(const command::Command& command, const Settings& settings,
+                     std::vector<std::string>& notices) {
+  if (!settings.nodes_typed() || !equals_nocase(settings.nodes, "all") || settings.bus.empty() ||
+      settings.bus_from == Source::line || !includes(command.needs, Needs::node))
+    return;
+  std::error_code error;
+  const auto file = cabinet::find_cabinet(std::filesystem::current_path(error));
+  if (!file.empty())
+    notices.push_back(fmt::format("all: the nodes of {} ({}), not the axes of {}",
+                                  name_of(settings.bus_from, "--bus"), settings.bus, file.string()));
 }
 
 /// What is shown while it runs, and what moves, is of one bus and family.
@@ -119,18 +139,40 @@ std::vector<std::string> Shell::name_axes(std::vector<std::string> words, const 
   return with_axis_option(std::move(words), *match.command, after, **known);
 }
 
-Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const Settings& settings) {
+Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const Settings& given,
+                                                   std::vector<std::string>& notices) {
   const auto& command = *line.command;
-  const bool needs_bus = includes(command.needs, Needs::bus) && settings.bus.empty();
-  if (!names_axes(settings.nodes) && !needs_bus && !may_name_bus(settings.bus))
+  const bool on_bus = includes(command.needs, Needs::bus);
+  const bool named = names_axes(given.nodes);
+  // The file may be the one that is to be made from this bus.
+  const bool rivals =
+      on_bus && !named && !command.opens_bus && command.path != "cabinet init" && file_rivals_bus(given);
+  if (on_bus && !named && !rivals) tell_all_of_bus(command, given, notices);
+  if (!named && !(on_bus && given.bus.empty()) && !may_name_bus(given.bus) && !rivals)
     return std::vector<LinePart>();
-  const auto known = cabinet(settings);
+  const auto known = cabinet(given);
   if (!known) return fail(known.error());
   if (*known == nullptr) return std::vector<LinePart>();
-  auto parts = parts_of(**known, command, line.arguments, settings);
+  const auto settings = rivals ? settle_bus(**known, given, notices) : given;
+  if (!settings) return fail(settings.error());
+  auto parts = parts_of(**known, command, line.arguments, *settings, notices);
   if (parts)
     if (const auto good = check_several(command, line.arguments, *parts); !good) return fail(good.error());
   return parts;
+}
+
+Result<Settings> Shell::settings_for_lines(Settings settings) {
+  if (file_rivals_bus(settings)) {
+    const auto known = cabinet(settings);
+    if (!known) return fail(known.error());
+    std::vector<std::string> notices;
+    auto settled = settle_bus(**known, std::move(settings), notices);
+    if (!settled) return settled;
+    settings = std::move(*settled);
+    for (const auto& notice : notices) console_->note("notice: " + notice + "\n");
+  }
+  settings.keep_for_lines();
+  return settings;
 }
 
 /// One part of a line on its way.
@@ -157,9 +199,17 @@ struct Shell::PartRun {
 };
 
 Outcome Shell::perform_parsed(const ParsedLine& line, const Settings& settings) {
-  auto parts = parts_of_line(line, settings);
+  std::vector<std::string> notices;
+  auto out = perform_parts(line, settings, notices);
+  out.notices.insert(out.notices.begin(), notices.begin(), notices.end());
+  return out;
+}
+
+Outcome Shell::perform_parts(const ParsedLine& line, const Settings& settings,
+                             std::vector<std::string>& notices) {
+  auto parts = parts_of_line(line, settings, notices);
   if (!parts) return failed(parts.error(), settings, line.command->path);
-  if (parts->empty()) return perform_part(line, {settings, {}});
+  if (parts->empty()) return perform_part(line, {settings, {}, {}});
   if (const auto right = check_parts(line, *parts); !right)
     return failed(right.error(), settings, line.command->path);
   const bool together = is_side_by_side(*line.command, line.arguments, *parts);

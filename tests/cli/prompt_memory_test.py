@@ -30,6 +30,12 @@ def value(node=1):
     return json.loads(answer.stdout)["result"][0]["raw"] if answer.returncode == 0 else None
 
 
+def remembered(place, folder=None, time_then="2026-01-01T00:00:00Z"):
+    """The document of one place, of this folder unless another is named."""
+    place = {key: value for key, value in place.items() if value != ""}
+    return json.dumps({"servoctl_prompt": 2, "places": [{"folder": folder or os.getcwd(), "time": time_then, **place}]})
+
+
 def last_place(state):
     # Without a state there is nothing to say, and the prompt is nowhere.
     t = Terminal(servoctl, state=state)
@@ -60,7 +66,7 @@ def last_place(state):
     file = os.path.join(state, "servoctl", "prompt.json")
     for bus, told in (("can77", r"not as last time \(bus can77, node 1\): [^\n]*can77[^\n]*"), ("slcan:/dev/nowhere@500k", r"the first line that needs the bus opens it")):
         with open(file, "w", encoding="utf-8") as out:
-            json.dump({"servoctl_prompt": 1, "bus": bus, "nodes": "1", "time": "2026-01-01T00:00:00Z"}, out)
+            out.write(remembered({"bus": bus, "nodes": "1"}))
         t = Terminal(servoctl, state=state)
         t.see(told)
         t.see(r"servoctl[^>]*> ")
@@ -74,7 +80,16 @@ def last_place(state):
     t.type("exit\n")
     expect("exit code behind `use all`", 0, t.exit_code())
     with open(file, encoding="utf-8") as written:
-        expect("the nodes kept of `use all`", None, json.load(written)["nodes"])
+        expect("the nodes kept of `use all`", None, json.load(written)["places"][0]["nodes"])
+    # What was remembered in another folder, or before folders were, is not taken here.
+    for text in (remembered({"bus": cell, "nodes": "1"}, folder="/elsewhere"),
+                 json.dumps({"servoctl_prompt": 1, "bus": cell, "nodes": "1", "time": "2026-01-01T00:00:00Z"})):
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(text)
+        t = Terminal(servoctl, state=state)
+        t.see(r"^servoctl> ")
+        t.type("\x04")
+        expect("exit code in another folder", 0, t.exit_code())
     # A FIFO in its place, and in that of the history, is waited for neither at the beginning nor at the end.
     for name in (file, os.path.join(state, "servoctl", "history")):
         os.remove(name)
@@ -127,7 +142,7 @@ def last_place_in_chinese(state):
             (here, {**in_cabinet, "cabinet": "/elsewhere/cabinet.toml"}, f"{not_there}（lift，控制柜 /elsewhere/cabinet.toml）：控制柜文件不是上次那个{go_on}", "servoctl"),
             (at, None, f"提示：{file}:1：不是 JSON，或不完整", "servoctl")):
         with open(file, "w", encoding="utf-8") as out:
-            out.write(json.dumps({"servoctl_prompt": 1, "time": time_then, **place}) if place else "{")
+            out.write(remembered(place, os.path.realpath(folder), time_then) if place else "{")
         os.chdir(folder)
         try:
             t = Terminal(servoctl, "--lang", "zh", state=state)
@@ -169,30 +184,32 @@ def place_in_a_cabinet(state):
         t.see(r"main lift gsd600[^>]*> ")
         t.type("exit\n")
         t.exit_code()
-        os.chdir(elsewhere)
-        t = Terminal(servoctl, state=state)
-        t.see(r"not as last time \(lift, cabinet [^\n]*here/cabinet.toml\): the cabinet file is another one")
-        t.see(r"servoctl> ")
-        t.type("exit\n")
-        t.exit_code()
-        # An interface that is gone is none of the cabinet's buses of that name.
         file = os.path.join(state, "servoctl", "prompt.json")
-        with open(file, encoding="utf-8") as out:
-            kept = out.read()
+        os.chdir(elsewhere)
+        in_here = {"bus": "main", "nodes": "lift", "cabinet": os.path.realpath(os.path.join(here, "cabinet.toml"))}
+        for place, why in ((in_here, "the cabinet file is another one"), ({"bus": cell, "nodes": "1"}, r"[^\n]*cabinet\.toml is in use here")):
+            with open(file, "w", encoding="utf-8") as out:
+                out.write(remembered(place))
+            t = Terminal(servoctl, state=state)
+            t.see(r"not as last time \([^)]*\): " + why)
+            t.see(r"servoctl> ")
+            t.type("exit\n")
+            t.exit_code()
+        # An interface that is gone is none of the cabinet's buses of that name.
         with open("cabinet.toml", "a", encoding="utf-8") as out:
             out.write(f'[bus.can77]\nurl = "{other}"\n')
-        for place, why in (({"bus": "can77", "nodes": "1", "drive": "gsd600", "cabinet": None}, r"[^\n]*can77[^\n]*"),
+        for place, why in (({"bus": "can77", "nodes": "1", "drive": "gsd600", "cabinet": None}, r"[^\n]*cabinet\.toml is in use here"),
                            ({"bus": cell, "nodes": "lift", "drive": "gsd600", "cabinet": None}, "the cabinet file is another one")):
             with open(file, "w", encoding="utf-8") as out:
-                json.dump({"servoctl_prompt": 1, **place, "time": "2026-01-01T00:00:00Z"}, out)
+                out.write(remembered(place))
             t = Terminal(servoctl, state=state)
             t.see(r"not as last time \([^)]*\): " + why)
             t.see(r"servoctl> ")
             t.type("\x04")
             t.exit_code()
-        with open(file, "w", encoding="utf-8") as out:
-            out.write(kept)
         os.chdir(at)
+        with open(file, "w", encoding="utf-8") as out:
+            out.write(remembered(in_here))
         t = Terminal(servoctl, state=state)
         t.see(r"not as last time [^\n]*: no cabinet file is in use here")
         t.see(r"servoctl> ")

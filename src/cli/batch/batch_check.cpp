@@ -45,9 +45,10 @@ class Check {
     if (!parsed) return fail(parsed.error());
     const auto settings = apply_options(settings_, parsed->arguments);
     if (!settings) return fail(settings.error());
-    auto parts = shell_->parts_of_line(*parsed, *settings);
+    std::vector<std::string> notices;  // The run tells them.
+    auto parts = shell_->parts_of_line(*parsed, *settings, notices);
     if (!parts) return fail(parts.error());
-    if (parts->empty()) return check_part(*parsed, {*settings, {}});
+    if (parts->empty()) return check_part(*parsed, {*settings, {}, {}});
     for (const auto& part : *parts)
       if (const auto right = check_part(*parsed, part); !right) return right;
     return {};

@@ -152,13 +152,15 @@ int run_batch(Shell& shell, const std::vector<std::string>& words, const Standar
   const auto parsed = parse_line(words);
   // The shell tells what is wrong with the line.
   if (!parsed) return shell.run(words);
-  auto settings = apply_options(shell.defaults(), parsed->arguments);
-  if (!settings) return shell.run(words);
+  const auto applied = apply_options(shell.defaults(), parsed->arguments);
+  if (!applied) return shell.run(words);
+  const auto settings = shell.settings_for_lines(*applied);
+  if (!settings) return show(shell.console(), failed(settings.error(), *applied, kPath));
   auto restriction = prepare_run(shell, *parsed, *settings);
   if (!restriction) return show(shell.console(), failed(restriction.error(), *settings, kPath));
   const RestrictedRun restricted(std::move(*restriction));
   const KeepDefaults keep(shell);
-  shell.defaults() = std::move(*settings);
+  shell.defaults() = *settings;
   return run_file(shell, parsed->arguments, input);
 }
 

@@ -31,7 +31,7 @@ Settings settings_of(const std::vector<std::string>& words, Settings base) {
   if (auto cabinet = value_of(words, "--cabinet", {})) base.cabinet = std::move(*cabinet);
   if (auto nodes = value_of(words, "--node", "-n")) {
     base.nodes = std::move(*nodes);
-    base.nodes_typed = true;
+    base.nodes_from = Source::line;
   }
   if (const auto language = value_of(words, "--lang", {})) base.chinese = *language == "zh";
   return base;

@@ -144,7 +144,7 @@ Offer complete(std::string_view line, Shell& shell) {
   const auto words = shell.name_axes(begun.words, match_command(begun.words));
   const auto place = begun_place(words, shell);
   Candidates found(begun.last, shell, place);
-  if (!add_prompt_words(found, words)) add_all(found, words, begun.last, place.settings.nodes_typed);
+  if (!add_prompt_words(found, words)) add_all(found, words, begun.last, place.settings.nodes_typed());
   Offer out{.typed = begun.typed, .candidates = found.take(), .note = found.note()};
   prefer_exact(out.candidates, begun.last);
   for (auto& one : out.candidates)
@@ -161,7 +161,7 @@ Candidates complete_in_shell(const std::vector<std::string>& words, const std::s
   const auto group = out.begin_group(Candidate::Group::options);
   if (named.empty()) out.add("--version", "show the version");
   out.begin_group(group);
-  add_all(out, named, begun, place.settings.nodes_typed);
+  add_all(out, named, begun, place.settings.nodes_typed());
   return out;
 }
 

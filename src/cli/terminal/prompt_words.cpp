@@ -7,6 +7,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/batch/batch_command.hpp"
+#include "cli/bus_choice.hpp"
 #include "cli/parse.hpp"
 #include "cli/restriction.hpp"
 #include "cli/terminal/ascii_form.hpp"
@@ -187,14 +188,26 @@ Result<void> check_restricted(const command::PromptWord& word, const std::string
   return name.find(':') == std::string::npos ? Result<void>() : restriction->check_bus(name);
 }
 
-/// `drive` says nothing of an axis.
-void tell_other_family(Shell& shell, const std::string& said) {
-  const auto family = family_in_cabinet(shell.defaults(), shell);
-  if (family.empty() || family == said) return;
-  shell.console().note(
-      fmt::format("notice: the lines for {} go on with {}, as the cabinet file says: `drive` is for nodes "
-                  "that are no axes\n",
-                  printable(shell.defaults().nodes), family));
+/// What an axis is, its file says.
+Result<void> check_family_of_axis(Shell& shell, const Settings& settings) {
+  const auto family = family_in_cabinet(settings, shell);
+  if (family.empty() || family == settings.drive) return {};
+  return fail(Errc::usage,
+              fmt::format("{} is {} by the cabinet file, not {}", settings.nodes, family, settings.drive),
+              "`use` chooses other nodes; or change `family` in the file");
+}
+
+/// A word that contradicts an earlier one ends what that chose.
+void tell_left(Shell& shell, const Settings& next) {
+  const auto& now = shell.defaults();
+  const auto tell = [&](std::string_view what, const std::string& before, const std::string& after) {
+    if (!before.empty() && after.empty())
+      shell.console().note(fmt::format("notice: {} {} is no longer chosen: the cabinet file says otherwise\n",
+                                       what, printable(before)));
+  };
+  tell("bus", now.bus, next.bus);
+  tell("drive family", now.drive, next.drive);
+  tell("the axis", now.nodes, next.nodes);
 }
 
 }  // namespace
@@ -222,11 +235,23 @@ Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::
   if (word->name == "use") {
     if (const auto known = check_nodes(shell, defaults, words[1]); !known) return fail(known.error());
     defaults.nodes = words[1];
+    defaults.nodes_from = Source::set;
+    if (!names_axes(defaults.nodes)) return defaults;
+    // Where axes are, and what they are, the file says: the later word holds.
+    const auto cabinet = shell.cabinet(defaults);
+    if (cabinet && *cabinet != nullptr && !are_on_bus(**cabinet, defaults)) defaults.bus.clear();
+    if (cabinet && *cabinet != nullptr && !are_of_family(**cabinet, defaults)) defaults.drive.clear();
   } else if (word->name == "drive") {
     if (const auto loaded = shell.profile(words[1]); !loaded) return fail(loaded.error());
     defaults.drive = words[1];
+    defaults.drive_from = Source::set;
+    if (const auto right = check_family_of_axis(shell, defaults); !right) return fail(right.error());
   } else {
     defaults.bus = words[1];
+    defaults.bus_from = Source::set;
+    const auto cabinet =
+        names_axes(defaults.nodes) ? shell.cabinet(defaults) : Result<const cabinet::Cabinet*>(nullptr);
+    if (cabinet && *cabinet != nullptr && !are_on_bus(**cabinet, defaults)) defaults.nodes.clear();
   }
   return defaults;
 }
@@ -239,8 +264,8 @@ std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& word
   if (word->name == "bus")
     if (const auto opened = open_chosen_bus(shell, *settings); !opened)
       return failed(opened.error(), shell.defaults(), word->name);
+  tell_left(shell, *settings);
   shell.defaults() = std::move(*settings);
-  if (word->name == "drive") tell_other_family(shell, words[1]);
   return Outcome{.command = std::string(word->name), .settings = shell.defaults()};
 }
 
