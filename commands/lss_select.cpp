@@ -1,3 +1,4 @@
+#include "cabinet/axis_identity.hpp"
 #include "command/lss_options.hpp"
 #include "session/can_network.hpp"
 
@@ -13,6 +14,14 @@ constexpr Parameter kLssSelectParameters[] = {
 Result<report::Value> run_lss_select(Context& context, const Arguments& arguments) {
   const auto choice = lss_choice(context, arguments);
   if (!choice) return fail(choice.error());
+  // The lines behind it mean the drive of the axis.
+  for (const auto* axis : context.axes) {
+    session::Identity identity;
+    identity.node = axis->node;
+    if (choice->address) identity.serial = choice->address->serial;
+    if (const auto same = cabinet::hold_serial(*axis, identity); choice->address && !same)
+      return fail(same.error());
+  }
   return look_at_lss_slave(context, *choice, [&context](const canopen::LssAddress& address) {
     context.session->can()->lss_selection() = address;
   });

@@ -7,6 +7,8 @@
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/gateway_network.hpp"
+#include "session/identify.hpp"
+#include "session/node_life.hpp"
 #include "session/stretch.hpp"
 
 namespace servoctl::commands {
@@ -18,6 +20,8 @@ using canopen::NmtCommand;
 using report::Value;
 
 constexpr Duration kBootPatience = std::chrono::seconds(5);
+/// A node answers node guarding within some milliseconds.
+constexpr Duration kGuardPatience = std::chrono::milliseconds(200);
 constexpr Duration kStatePatience = std::chrono::seconds(2);
 
 constexpr Parameter kNmtParameters[] = {
@@ -30,12 +34,7 @@ bool is_reset(NmtCommand command) {
   return command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
 }
 
-/// What was heard of one node before the command.
-struct Before {
-  std::uint8_t node;
-  std::uint32_t boots;
-  std::uint32_t heartbeats;
-};
+using Before = session::NodeLife;
 
 bool confirmed(session::Session& session, const Before& before, NmtCommand command) {
   if (is_reset(command)) return session.can()->watch().boots(before.node) > before.boots;
@@ -85,16 +84,58 @@ Error unconfirmed(const Before& before, NmtCommand command, const Heartbeats& he
   return error;
 }
 
+/// What is known of the command and this node; `confirmed`: empty where nobody waited for it.
+std::string_view result_of_nmt(const Before& entry, const std::optional<bool>& confirmed) {
+  if (confirmed.value_or(false)) return "confirmed";
+  return !confirmed && entry.alive ? "sent; the node is there" : "sent, not confirmed";
+}
+
 report::Table nmt_table(Context& context, std::span<const Before> before, NmtCommand command, bool waited) {
   report::Table table;
-  table.columns = {{"node"}, {"command"}, {"confirmed"}, {"state"}};
+  table.columns = {{"node"}, {"command"}, {"confirmed"}, {"state"}, {"result"}};
   for (const auto& entry : before) {
     const auto state = waited ? context.session->can()->watch().state(entry.node) : std::nullopt;
+    auto known = waited ? std::optional(confirmed(*context.session, entry, command)) : std::nullopt;
+    if (!waited && entry.node != 0 && !entry.alive) known = false;
     table.rows.push_back({entry.node == 0 ? Value("all") : Value(entry.node), canopen::name(command),
-                          waited ? Value(confirmed(*context.session, entry, command)) : Value(),
-                          state ? Value(canopen::name(*state)) : Value()});
+                          known ? Value(*known) : Value(), state ? Value(canopen::name(*state)) : Value(),
+                          result_of_nmt(entry, known)});
   }
   return table;
+}
+
+/// What starts or resets a node goes to one drive.
+Result<void> look_at_nodes(Context& context, NmtCommand command, std::vector<Before>& nodes) {
+  auto& session = *context.session;
+  if (const auto asked = session::ask_who_answers(session, nodes); !asked) return asked;
+  const auto least = is_reset(command) ? session::kBeforeMotion : session::kBeforeWrites;
+  if (const auto heard = session::settle_duplicates(session, context.nodes, least); !heard) return heard;
+  for (const auto node : context.nodes)
+    if (const auto single = session::refuse_duplicate(session, node); !single) return single;
+  return is_reset(command) ? session::hear_who_lives(session, nodes, kGuardPatience) : Result<void>();
+}
+
+/// Behind the command: whether anybody is there at all. Of a stopped node without heartbeat and guarding
+/// nothing can be known, so that its silence is no error.
+Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Before>& nodes) {
+  auto& session = *context.session;
+  const bool stops = command == NmtCommand::stop;
+  if (!stops && !is_reset(command))
+    if (const auto asked = session::ask_who_answers(session, nodes); !asked) return asked;
+  const auto patience = is_reset(command) ? kBootPatience : kGuardPatience;
+  if (const auto heard = session::hear_who_lives(session, nodes, patience); !heard) return heard;
+  for (const auto& entry : nodes) {
+    if (entry.alive) continue;
+    auto error = drive_error(
+        Errc::timeout, entry.node,
+        fmt::format("'{}' was sent, not confirmed: nothing was heard of the node", canopen::name(command)),
+        "check node-ID, power and cable; `scan` shows who answers");
+    if (stops)
+      context.notices.push_back(error.message);
+    else
+      context.errors.push_back(std::move(error));
+  }
+  return {};
 }
 
 /// What a user may have set a moment ago, and a drive loses.
@@ -121,7 +162,8 @@ std::string question_nmt(std::span<const std::uint8_t> nodes, NmtCommand command
 }
 
 /// What a reset of the communication has done where its boot-up was seen, and does by the standard elsewhere.
-void tell_reset(Context& context, std::span<const Before> before, bool waited) {
+void tell_reset(Context& context, std::span<const Before> before, NmtCommand command, bool waited) {
+  if (command != NmtCommand::reset_communication) return;
   bool unseen = false;
   for (const auto& entry : before)
     if (waited && confirmed(*context.session, entry, NmtCommand::reset_communication))
@@ -168,19 +210,25 @@ Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtC
     if (const auto answer = context.confirm(question_nmt(context.nodes, command)); !answer)
       return fail(answer.error());
   const auto heartbeats = wait && !is_reset(command) ? heartbeats_of(context) : Heartbeats();
-  std::vector<Before> before;
-  for (const auto node : context.nodes) {
-    before.push_back({node, context.session->watch().boots(node), context.session->watch().heartbeats(node)});
-    if (const auto sent = send_nmt(*context.session, command, node); !sent) return fail(sent.error());
+  auto before = session::look_from_now(*context.session, context.nodes);
+  const bool named = context.nodes.front() != 0;
+  const bool begins = is_reset(command) || command == NmtCommand::start;
+  if (named && begins)
+    if (const auto looked = look_at_nodes(context, command, before); !looked) return fail(looked.error());
+  for (auto& entry : before) {
+    entry.boots = context.session->watch().boots(entry.node);
+    entry.heartbeats = context.session->watch().heartbeats(entry.node);
+    if (const auto sent = send_nmt(*context.session, command, entry.node); !sent) return fail(sent.error());
   }
-  const bool tells = command == NmtCommand::reset_communication;
   if (!wait) {
-    if (tells) tell_reset(context, before, false);
+    if (named)
+      if (const auto looked = look_for_life(context, command, before); !looked) return fail(looked.error());
+    tell_reset(context, before, command, false);
     return report::Value(nmt_table(context, before, command, false));
   }
   const auto done = [&] {
-    return std::all_of(before.begin(), before.end(),
-                       [&](const Before& b) { return confirmed(*context.session, b, command); });
+    return std::ranges::all_of(before,
+                               [&](const Before& b) { return confirmed(*context.session, b, command); });
   };
   const bool hopeless = heartbeats.silent.size() == before.size();
   const auto patience = is_reset(command) ? kBootPatience : std::max(kStatePatience, 2 * heartbeats.longest);
@@ -188,7 +236,7 @@ Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtC
   const session::Stretch stretch(*context.session, until, session::Stretch::End::at_latest);
   const auto waited = context.session->wait(done, until);
   if (!waited) return fail(waited.error());
-  if (tells) tell_reset(context, before, true);
+  tell_reset(context, before, command, true);
   for (const auto& entry : before)
     if (!confirmed(*context.session, entry, command))
       context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->can()->watch()));
@@ -201,14 +249,17 @@ Result<report::Value> run_nmt_command(Context& context, const Arguments& argumen
 }
 
 constexpr std::string_view kDetails =
-    "The command is sent once; nodes do not answer it. With --wait it is done when a heartbeat confirms it; "
-    "exit code 4 if none does. `-n all` addresses every node.";
+    "The command is sent once; nodes do not answer it. Then servoctl looks for a sign of life: a heartbeat, an "
+    "answer to node guarding or to an SDO request. Without one the result is \"sent, not confirmed\", with exit "
+    "code 4 unless the node was stopped. With --wait it is done when a heartbeat confirms it; exit code 4 if "
+    "none does. `-n all` addresses every node, and looks for nobody.";
 
 constexpr std::string_view kNmtElsewhere =
     "the AL state of a slave is changed with `state init`, `state preop`, `state safeop` and `state op`";
 
 constexpr std::string_view kResetDetails =
-    "The node restarts as after power-on: settings neither stored (`store`) nor kept (--keep) are lost. With "
+    "The node restarts as after power-on: settings neither stored (`store`) nor kept (--keep) are lost. A "
+    "node-ID that two drives share is refused. With "
     "--wait it is done when the boot-up message confirms it; exit code 4 if none comes. `-n all` addresses "
     "every node.";
 

@@ -145,6 +145,7 @@ const Command kStateInit{
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_state_command<NodeState::initialising>,
+    .way_out = true,
     .elsewhere = kStateElsewhere,
 };
 
@@ -159,6 +160,7 @@ const Command kStatePreop{
     .effect = Effect::writes,
     .family = FamilyCheck::never,
     .run = run_state_command<NodeState::pre_operational>,
+    .way_out = true,
     .elsewhere = kStateElsewhere,
 };
 

@@ -76,6 +76,17 @@ tl::unexpected<Error> several_families(const Cast& cast) {
                   lines));
 }
 
+/// A stopped node answers no SDO.
+Error serial_not_read(const command::Command& command, const cabinet::Axis& axis, const std::string& bus,
+                      Error error) {
+  if (error.code != Errc::timeout || !includes(command.needs, Needs::nmt)) return error;
+  error.message = fmt::format("its serial number cannot be checked: {}", error.message);
+  error.hint = fmt::format(
+      "`nmt preop` first, if the node is stopped; -b {} -n {} names the node without the cabinet file", bus,
+      axis.node);
+  return error;
+}
+
 }  // namespace
 
 const Shell::FoundFamily* Shell::taken_for() const {
@@ -280,12 +291,16 @@ void Shell::offer_turn(Run& run) {
 }
 
 /// Before something is changed: the drive of an axis is the one that the file says, where it says its serial
-/// number.
+/// number; also of a node that is one of its axes and was named by number, or by `all`: those that answer.
 Result<void> Shell::hold_serials(Run& run) {
-  for (const auto* axis : run.axes) {
-    if (!axis->serial || run.settings.force_family) continue;
+  const auto& nodes = run.context.nodes;
+  const bool all = !nodes.empty() && nodes.front() == 0;
+  for (const auto* axis : run.on_bus) {
+    const bool is_meant = all || std::find(nodes.begin(), nodes.end(), axis->node) != nodes.end();
+    if (!is_meant || !axis->serial || run.settings.force_family) continue;
     const auto identity = session::read_identity(*run.context.session, axis->node);
-    if (!identity) return fail(identity.error());
+    if (all && !identity && identity.error().code == Errc::timeout) continue;
+    if (!identity) return fail(serial_not_read(*run.command, *axis, run.settings.bus, identity.error()));
     if (const auto same = cabinet::hold_serial(*axis, *identity); !same) return same;
   }
   return {};

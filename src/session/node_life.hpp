@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "session/session.hpp"
+
+namespace servoctl::session {
+
+/// What was heard of one node so far, and whether somebody is there.
+struct NodeLife {
+  std::uint8_t node = 0;
+  std::uint32_t boots = 0;       ///< Boot-up messages and
+  std::uint32_t heartbeats = 0;  ///< heartbeats, when it was looked at.
+  bool alive = false;
+};
+
+/// From now on.
+std::vector<NodeLife> look_from_now(const Session& session, std::span<const std::uint8_t> nodes);
+
+/// Asks all for 1000h once, at the same time: in pre-operational and operational a node answers an SDO
+/// request (CiA 301, 7.3.2.2.1). Errc::bus and Errc::interrupted.
+Result<void> ask_who_answers(Session& session, std::span<NodeLife> nodes);
+
+/// Waits until of each that is not known to be alive a boot-up, a heartbeat or an answer to node guarding was
+/// heard, at most for `patience`, or for the heartbeat period of a node where that is longer. Errors of the
+/// bus.
+Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duration patience);
+
+}  // namespace servoctl::session
