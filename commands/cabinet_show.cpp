@@ -75,16 +75,24 @@ class Differences {
     if (read_at_ && now < *read_at_ + kEvery) return;
     read_at_ = now;
     found_.clear();
+    waiting_.clear();
     std::vector<cabinet::Station> stations;
     for (const auto& look : looks)
       if (!look.error) stations.push_back(open_station(*context_, *cabinet_, *look.axis));
     const cabinet::PlanChoice choice{.unlisted = false, .families = families_};
     for (const auto& look : cabinet::look_at_all(*context_, *cabinet_, stations, choice)) {
       if (look.plan)
-        found_[look.axis] = look.plan->different;
+        take(look);
       else
         tell(*look.axis, look.plan.error());
     }
+  }
+
+  /// Whether values of the axis wait for a restart.
+  bool waits(const AxisState& look) const { return waiting_.count(look.axis) > 0; }
+  report::List owed(const AxisState& look) const {
+    const auto found = waiting_.find(look.axis);
+    return found == waiting_.end() ? report::List() : found->second;
   }
 
   /// Empty: not known.
@@ -94,6 +102,17 @@ class Differences {
   }
 
  private:
+  void take(const cabinet::PlannedAxis& look) {
+    found_[look.axis] = look.plan->different;
+    if (!look.waits_for_restart()) return;
+    report::List names;
+    for (const auto& name : look.plan->owed) names.emplace_back(name);
+    waiting_[look.axis] = std::move(names);
+    for (const auto& notice : look.notices)
+      if (auto text = cabinet::of_axis(*look.axis, notice); told_.insert(text).second)
+        context_->notices.push_back(std::move(text));
+  }
+
   /// Why an axis is not held against the file: it may be another drive.
   void tell(const cabinet::Axis& axis, const Error& error) {
     auto text = fmt::format("axis {}: {}", axis.name, error.message);
@@ -106,9 +125,17 @@ class Differences {
   std::vector<drive::Family> families_;
   std::optional<TimePoint> read_at_;
   std::map<const cabinet::Axis*, std::size_t> found_;
+  std::map<const cabinet::Axis*, report::List> waiting_;  ///< Parameters that wait for a restart.
 };
 
 Value or_null(const auto& optional) { return optional ? Value(*optional) : Value(); }
+
+/// `0`, `2`, `0 restart`.
+Value differ_cell(const AxisState& look, const Differences& differences) {
+  const auto different = differences.of(look);
+  if (!different || !differences.waits(look)) return or_null(different);
+  return fmt::format("{} restart", *different);
+}
 
 Record axis_record(const AxisState& look, const Differences& differences) {
   const auto position =
@@ -125,6 +152,7 @@ Record axis_record(const AxisState& look, const Differences& differences) {
           {"fault_text", report::text_or_null(look.told_fault.text)},
           {"position", position},
           {"different", or_null(differences.of(look))},
+          {"restart_owed", differences.owed(look)},
           {"error", look.error ? show::error_record(*look.error) : Value()}};
 }
 
@@ -137,7 +165,7 @@ report::Table axes_table(const std::vector<AxisState>& looks, const Differences&
   for (const auto& look : looks) {
     out.rows.push_back({look.axis->name, look.axis->bus, look.axis->node, look.axis->family,
                         shown(network_text(look)), state_text(look, chinese), shown(axis_mode_text(look)),
-                        Value(), shown(position_text(look)), or_null(differences.of(look))});
+                        Value(), shown(position_text(look)), differ_cell(look, differences)});
     out.documents.emplace_back(axis_record(look, differences));
   }
   constexpr std::size_t kFault = 7;
@@ -185,7 +213,8 @@ class WatchingAxes {
  private:
   std::string differ_text(const AxisState& look) const {
     const auto different = differences_->of(look);
-    return different ? fmt::format("{}", *different) : "-";
+    if (!different) return "-";
+    return differences_->waits(look) ? fmt::format("{} restart", *different) : fmt::format("{}", *different);
   }
 
   /// A position changes all the time: it is told with what else changes.
@@ -194,6 +223,7 @@ class WatchingAxes {
                             axis_mode_text(look), fault_text(look));
     if (const auto different = differences_->of(look); different.value_or(0) > 0)
       text += fmt::format("  {} differ", *different);
+    if (differences_->waits(look)) text += "  restart";
     auto& before = lines_[look.axis];
     if (text == before) return;
     before = text;

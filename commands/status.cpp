@@ -12,6 +12,7 @@
 #include "session/ethercat_network.hpp"
 #include "session/state_pause.hpp"
 #include "show/fault_records.hpp"
+#include "show/owed_restart.hpp"
 #include "show/records.hpp"
 #include "show/ring_table.hpp"
 
@@ -28,6 +29,9 @@ using report::Value;
 constexpr Parameter kStatusParameters[] = {
     {.name = "--long",
      .help = "every bit of the statusword, and more, in several lines a node",
+     .kind = Kind::flag},
+    {.name = "--restarted",
+     .help = "the drive was restarted: nothing that was written before waits for a restart any more",
      .kind = Kind::flag},
 };
 
@@ -184,7 +188,16 @@ Record status_record(Context& context, std::uint8_t node, std::span<const Result
     add_nmt_state(out, context, node, answers);
   add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
+  if (auto owed = show::owed_records(context.profile, show::owed_values(context, node)); !owed.empty())
+    out.push_back({"restart_owed", std::move(owed), Show::json});
   return out;
+}
+
+/// What the drive has stored, and does not go by yet.
+void tell_owed(Context& context) {
+  for (const auto node : context.nodes)
+    if (auto notice = show::owed_notice(context, node); !notice.empty())
+      context.notices.push_back(std::move(notice));
 }
 
 Value mode_cell(const Context& context, const Result<Bytes>& answer) {
@@ -227,6 +240,9 @@ List overview_row(const Context& context, std::uint8_t node, std::span<const Res
 }
 
 Result<report::Value> run_status(Context& context, const Arguments& arguments) {
+  if (arguments.has("--restarted"))
+    for (const auto node : context.nodes)
+      show::OwedRestartFile(context.state_folder, context.session->url(), node).remove();
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes)
     for (std::size_t i = 0; i < kCount; ++i)
@@ -249,6 +265,7 @@ Result<report::Value> run_status(Context& context, const Arguments& arguments) {
     out.documents.emplace_back(status_record(context, context.nodes[i], mine));
     out.rows.push_back(overview_row(context, context.nodes[i], mine));
   }
+  tell_owed(context);
   out.json_only = out.rows.empty();
   if (arguments.has("--long")) return report::Value(std::move(out.documents));
   return report::Value(std::move(out));
@@ -272,7 +289,8 @@ const Command kStatus{
         "for it. --long shows the statusword with its bits, the error register and the fault in "
         "full; JSON always has all of it. The NMT state comes from the heartbeat; if "
         "the node sends one, status waits for it. On EtherCAT the slave is asked for its AL state; in SAFE-OP and "
-        "OP --long shows the counts of process data as well.",
+        "OP --long shows the counts of process data as well. Values that were written, and that the drive goes by only after "
+        "a restart, are told until servoctl has seen the restart; --restarted says that there was one.",
     .parameters = kStatusParameters,
     .examples = kStatusExamples,
     .needs = Needs::node,

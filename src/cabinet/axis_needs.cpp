@@ -15,13 +15,6 @@
 namespace servoctl::cabinet {
 namespace {
 
-void add_need(std::vector<AxisNeed>& needs, AxisNeed::Kind kind, const std::string& who) {
-  const auto found =
-      std::find_if(needs.begin(), needs.end(), [&](const AxisNeed& need) { return need.kind == kind; });
-  auto& need = found != needs.end() ? *found : needs.emplace_back(AxisNeed{kind});
-  if (!who.empty()) need.names.push_back(who);
-}
-
 bool is_locked(const drive::Profile& profile, const od::Parameter* parameter) {
   const auto& locked = profile.rules.store.locked;
   return parameter != nullptr && std::find(locked.begin(), locked.end(), parameter->id) != locked.end();
@@ -34,6 +27,14 @@ Result<bool> is_energised(session::Session& session, std::uint8_t node) {
 }
 
 }  // namespace
+
+void add_need(std::vector<AxisNeed>& needs, AxisNeed::Kind kind, const std::string& who) {
+  const auto found =
+      std::find_if(needs.begin(), needs.end(), [&](const AxisNeed& need) { return need.kind == kind; });
+  auto& need = found != needs.end() ? *found : needs.emplace_back(AxisNeed{kind});
+  if (!who.empty() && std::find(need.names.begin(), need.names.end(), who) == need.names.end())
+    need.names.push_back(who);
+}
 
 std::string_view name(AxisNeed::Kind kind) {
   switch (kind) {

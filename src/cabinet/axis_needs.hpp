@@ -20,6 +20,9 @@ struct AxisNeed {
   std::vector<std::string> names = {};  ///< Of the parameters that ask for it.
 };
 std::string_view name(AxisNeed::Kind kind);
+/// Adds the name to the need of this kind, once.
+void add_need(std::vector<AxisNeed>& needs, AxisNeed::Kind kind, const std::string& who);
+
 /// `a restart (Pn0032, Pn0201)`.
 std::string to_string(const AxisNeed& need);
 /// `needs a restart (Pn0032, Pn0201)`.

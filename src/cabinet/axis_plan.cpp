@@ -15,6 +15,7 @@
 #include "session/state_pause.hpp"
 #include "settings/comparison.hpp"
 #include "settings/selection.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::cabinet {
 namespace {
@@ -127,7 +128,17 @@ class AxisPlanner {
     auto needs = needs_of(*desk_->session, *desk_->profile, node, target.present(), target.wanted());
     if (!needs) return fail(needs.error());
     out_.needs = std::move(*needs);
+    note_owed();
     return note_pdos(target.present(), target.wanted());
+  }
+
+  /// What the drive has stored it goes by only after a restart.
+  void note_owed() {
+    const auto owed = show::owed_values(*desk_, axis_->node);
+    if (owed.empty()) return;
+    out_.owed = show::owed_names(desk_->profile, owed);
+    for (const auto& name : out_.owed) add_need(out_.needs, AxisNeed::Kind::restart, name);
+    desk_->notices.push_back(show::owed_notice(*desk_, axis_->node));
   }
 
   /// With the line of the file that says it.

@@ -35,6 +35,7 @@ struct AxisPlan {
   report::Value unlisted;     ///< A table: what is not in the file, nor as the factory left it; null: none.
   std::size_t unlisted_count = 0;
   std::vector<AxisNeed> needs;
+  std::vector<std::string> owed;          ///< Parameters that hold what was written and wait for a restart.
   std::vector<canopen::Pdo> pdos_before;  ///< Those that change, and what they become.
   std::vector<canopen::Pdo> pdos_after;
 };

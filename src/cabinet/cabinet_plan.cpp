@@ -156,7 +156,11 @@ void add_text(const PlannedAxis& look, Record& out) {
     return;
   }
   if (look.plan->different == 0) {
-    out.push_back({look.axis->name, "nothing to do", Show::text, title});
+    out.push_back({look.axis->name,
+                   look.plan->owed.empty() ? "nothing to do"
+                                           : fmt::format("nothing to write; needs a restart ({})",
+                                                         fmt::join(look.plan->owed, ", ")),
+                   Show::text, title});
   } else if (const auto* table = std::get_if<Table>(&look.plan->differences.data())) {
     auto shown = *table;
     for (const auto& need : look.plan->needs) shown.below.push_back(sentence(need));
@@ -264,9 +268,21 @@ void tell_looks(show::Desk& desk, std::span<const PlannedAxis> looks) {
   }
 }
 
-bool any_to_do(std::span<const PlannedAxis> looks) { return axes_to_do(looks) > 0; }
+bool any_to_do(std::span<const PlannedAxis> looks) {
+  return std::any_of(looks.begin(), looks.end(),
+                     [](const auto& look) { return look.to_do() || look.waits_for_restart(); });
+}
 
 Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
+  if (axes_to_do(looks) == 0) {
+    std::vector<std::string> waiting;
+    for (const auto& look : looks)
+      if (look.waits_for_restart()) waiting.push_back(look.axis->name);
+    const auto names = fmt::format("{}", fmt::join(waiting, ","));
+    return make_error(Errc::negative,
+                      fmt::format("{}: values are stored and in force after a restart", names),
+                      fmt::format("`nmt reset -n {} --wait`, or switch off and on", names));
+  }
   return make_error(
       Errc::negative,
       values_to_do(looks) == 1

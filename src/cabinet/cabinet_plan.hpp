@@ -15,6 +15,7 @@ struct PlannedAxis {
   Result<AxisPlan> plan;
   std::vector<std::string> notices;
   bool to_do() const { return plan && plan->different > 0; }
+  bool waits_for_restart() const { return plan && !plan->owed.empty(); }
 };
 
 /// Looks at all axes at the same time; what one axis or its bus is not able to tell does not stop the others.
@@ -37,7 +38,7 @@ Error of_axis(const Axis& axis, Error error);
 std::string of_axis(const Axis& axis, const std::string& notice);
 
 bool any_to_do(std::span<const PlannedAxis> looks);
-/// The exit code 1 of a plan by which there is something to do.
+/// The exit code 1 of a plan by which there is something to do: to write, or to restart.
 Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks);
 
 /// Where the values of an axis from before an apply are kept, unless that has those of another drive (see

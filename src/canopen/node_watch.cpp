@@ -1,6 +1,7 @@
 #include "canopen/node_watch.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "canopen/cob_id.hpp"
 #include "canopen/sdo_frame.hpp"
@@ -45,7 +46,15 @@ void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
   on_sent(frame);
 }
 
+void NodeWatch::on_nmt(const NmtMessage& message) {
+  if (message.command != NmtCommand::reset_communication && message.command != NmtCommand::reset_node) return;
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    if (message.node == 0 || i == message.node)
+      nodes_[i].communication_only = message.command == NmtCommand::reset_communication;
+}
+
 void NodeWatch::on_sent(const can::Frame& frame) {
+  if (const auto message = parse_nmt(frame)) on_nmt(*message);
   const bool asks_once = asks_for_state(frame) && !nodes_[watched_node_of(frame)].guarded;
   if (asks_once || writes_heartbeat_time(frame)) forget_period(watched_node_of(frame));
 }
@@ -79,6 +88,7 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
   node.doubted = false;
   if (message.boot_up) {
     ++node.boots;
+    node.restarts += std::exchange(node.communication_only, false) ? 0U : 1U;
     emergency_ids_.on_boot_up(message.node);
     node.state = NmtState::pre_operational;  // CiA 301, 7.3.2.2.1: a node enters it by itself after boot-up.
     node.last.reset();
@@ -154,6 +164,8 @@ void NodeWatch::forget(std::uint8_t node) {
   emergencies_.erase(node);
   nodes_[node].boots = before.boots;
   nodes_[node].losses = before.losses;
+  nodes_[node].restarts = before.restarts;
+  nodes_[node].communication_only = before.communication_only;
   nodes_[node].guarded = before.guarded;
   update_deadline();
 }

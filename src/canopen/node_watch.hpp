@@ -66,6 +66,9 @@ class NodeWatch {
   }
   /// Boot-up messages heard from the node so far.
   std::uint32_t boots(std::uint8_t node) const { return nodes_[node].boots; }
+  /// Those of them that do not follow an NMT reset of the communication, behind which the application goes on
+  /// as it was (CiA 301, 7.3.2.2.1).
+  std::uint32_t restarts(std::uint8_t node) const { return nodes_[node].restarts; }
   /// Heartbeats heard from the node so far, boot-up not counted.
   std::uint32_t heartbeats(std::uint8_t node) const { return nodes_[node].heartbeats; }
   /// How often its heartbeat was lost.
@@ -94,6 +97,8 @@ class NodeWatch {
     std::optional<NmtState> state;
     bool doubted = false;  ///< It was heard before the heartbeat or the bus was lost.
     std::uint32_t boots = 0;
+    std::uint32_t restarts = 0;
+    bool communication_only = false;  ///< Its next boot-up is that of a reset of its communication.
     std::uint32_t heartbeats = 0;
     std::uint32_t losses = 0;
     std::optional<TimePoint> last;  ///< Last heartbeat since boot-up or loss.
@@ -106,6 +111,7 @@ class NodeWatch {
   void on_emergency(const Emergency& emergency, TimePoint now);
   void on_error_control(const ErrorControl& message, TimePoint now);
   void forget_period(std::uint8_t node);
+  void on_nmt(const NmtMessage& message);
 
   void update_deadline();
 

@@ -135,6 +135,11 @@ HeardStates::State BusHolder::heard_state(const session::Session& session, std::
   return found == opened_.end() ? HeardStates::State() : found->second.heard->state(node, family);
 }
 
+RestartWatch* BusHolder::restarts(const session::Session& session) const {
+  const auto found = opened_.find(&session);
+  return found == opened_.end() ? nullptr : found->second.restarts.get();
+}
+
 std::uint64_t BusHolder::opening(const session::Session& session) const {
   const auto found = opened_.find(&session);
   return found == opened_.end() ? 0 : found->second.number;
@@ -164,7 +169,9 @@ Result<void> BusHolder::connect(const std::string& url) {
   if (auto left = left_energised_.extract(session::canonical_url(url)))
     session->energised() = std::move(left.mapped());
   session_ = session.get();
-  opened_[session_] = {std::make_unique<HeardStates>(*session_), ++openings_};
+  auto heard = std::make_unique<HeardStates>(*session_);
+  opened_[session_] = {std::move(heard), std::make_unique<RestartWatch>(*session_, state_folder_),
+                       ++openings_};
   open_[session::canonical_url(url)] = std::move(session);
   return {};
 }

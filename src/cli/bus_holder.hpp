@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/heard_states.hpp"
+#include "cli/restart_watch.hpp"
 #include "cli/settings.hpp"
 #include "cli/terminal/console.hpp"
 #include "session/open_bus.hpp"
@@ -35,8 +36,13 @@ std::string bus_hint(std::span<const std::string> can, std::span<const std::stri
 class BusHolder {
  public:
   /// `session_options` hold for every bus that is opened, `bus_options.trace` is that of the settings.
-  BusHolder(Console& console, session::BusOptions bus_options, session::Options session_options)
-      : console_(&console), bus_options_(std::move(bus_options)), options_(std::move(session_options)) {
+  /// `state_folder`: where it is kept what waits for a restart of a drive; may be empty.
+  BusHolder(Console& console, session::BusOptions bus_options, session::Options session_options,
+            std::filesystem::path state_folder = {})
+      : console_(&console),
+        bus_options_(std::move(bus_options)),
+        options_(std::move(session_options)),
+        state_folder_(std::move(state_folder)) {
     bus_options_.trace_failed = [this](const Error& error) { on_trace_failed(error); };
     console_->set_service([this] { return serve(); });
     console_->set_presses([this] { return sends_regularly(); });
@@ -79,6 +85,9 @@ class BusHolder {
   /// Tells one opening of a bus from every other one: what was counted since the other, such as restarts of
   /// its nodes, began anew. 0: it is not open.
   std::uint64_t opening(const session::Session& session) const;
+
+  /// Of a session that is open; null elsewhere.
+  RestartWatch* restarts(const session::Session& session) const;
 
   /// Waits for what `wanted` asks of its descriptor, at most so long, while all buses are served. False after
   /// a signal. `lost` is told of each bus that is lost, and gone then.
@@ -141,6 +150,7 @@ class BusHolder {
   Console* console_;
   session::BusOptions bus_options_;
   session::Options options_;
+  std::filesystem::path state_folder_;
   std::optional<Error> trace_failure_;  ///< Outlives the bus, which may tell of it at its very end.
   bool flushing_ = false;
   bool serving_beside_ = false;
@@ -149,6 +159,7 @@ class BusHolder {
   std::map<std::string, show::AxisNames> names_;                   ///< By canonical_url().
   struct Opened {
     std::unique_ptr<HeardStates> heard;
+    std::unique_ptr<RestartWatch> restarts;
     std::uint64_t number = 0;
   };
   std::map<const session::Session*, Opened> opened_;  ///< Those that are open.

@@ -76,7 +76,7 @@ Shell::Shell(Console& console, Options options)
         console_->set_care(worst == session::Care::unsettled ? session::Care::none : worst);
       }),
       bus_(console, {.drive_folders = options_.drive_folders, .trace = {}, .clock = options_.clock},
-           session_options()) {
+           session_options(), options_.state_folder) {
   console_->set_chinese(options_.defaults.chinese);
 }
 
@@ -98,7 +98,7 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   }
   auto applied = apply_options(options_.defaults, parsed->arguments);
   if (!applied) return failed(applied.error(), std::move(settings), path);
-  if (parsed->command->all_by_default && !applied->nodes_typed) applied->nodes = "all";
+  if (parsed->command->all_by_default && !applied->nodes_typed()) applied->nodes = "all";
   console_->set_quiet(applied->quiet);
   const ShownWait shown(*this);
   console_->set_verbose(applied->verbose);
@@ -130,7 +130,7 @@ Result<void> Shell::make_ready(Run& run, const command::Arguments& arguments) {
   if (const auto ready = prepare(run, arguments); !ready) return ready;
   auto& context = run.context;
   context.axes = run.axes;
-  context.nodes_typed = run.settings.nodes_typed;
+  context.nodes_typed = run.settings.nodes_typed();
   context.chinese = run.settings.chinese;
   context.json = run.settings.json;
   context.dry_run = run.settings.dry_run;
@@ -167,6 +167,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   if (!opened) return fail(opened.error());
   run.context.session = *opened;
   run.energised_before = (*opened)->energised().nodes();
+  if (console_->is_verbose()) tell_place(run);
   if (const auto fits = check_registers(command, **opened, run.context.profile, run.settings.chinese); !fits)
     return fits;
   if (const auto possible = admit(command, arguments, **opened); !possible) return possible;
@@ -177,7 +178,8 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   run.line.wait_for_late(command.effect_with(arguments) >= command::Effect::stores);
   if (const auto held = run.line.hold_family(run.context.nodes, run.context.profile, weight); !held)
     return held;
-  return weight == FamilyGate::Weight::changes ? hold_serials(run) : Result<void>();
+  const bool changes = command.effect_with(arguments) >= Effect::writes && !command.way_out;
+  return changes ? hold_serials(run) : Result<void>();
 }
 
 /// A command without a bus takes the nodes as they are written.
@@ -208,8 +210,18 @@ Result<void> Shell::prepare_nodes(Run& run) {
   return {};
 }
 
+/// What waits for a restart is known to the next line, and outlives the process.
+void Shell::keep_restarts() {
+  for (auto* session : bus_.sessions())
+    if (auto* watch = bus_.restarts(*session))
+      if (const auto kept = watch->keep(); !kept)
+        console_->note(fmt::format("notice: what waits for a restart is not remembered: {}\n",
+                                   printable(kept.error().message)));
+}
+
 Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
+  keep_restarts();
   const bool met_loss = run.context.session != nullptr && run.context.session->take_met_loss();
   hear_second_node(run);
   if (!result) errors.insert(errors.begin(), result.error());
@@ -245,6 +257,14 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .abort_words = std::move(words),
           .axis = std::move(axis),
           .names = of_family != nullptr ? *of_family : report::Names()};
+}
+
+Result<session::Session*> Shell::open(const Settings& settings) {
+  auto opened = bus_.open(settings);
+  // A drive may have started since the last line.
+  if (opened)
+    if (auto* watch = bus_.restarts(**opened)) (void)watch->keep();
+  return opened;
 }
 
 Result<std::unique_ptr<session::RingEnd>> Shell::open_ring_end(const Settings& settings) {

@@ -142,14 +142,17 @@ class Shell {
 
   /// As parts_of(), with the cabinet file of the settings; none where there is no such file, or the line does
   /// not need it. Errors as there, and of the file.
-  Result<std::vector<LinePart>> parts_of_line(const ParsedLine& line, const Settings& settings);
+  Result<std::vector<LinePart>> parts_of_line(const ParsedLine& line, const Settings& settings,
+                                              std::vector<std::string>& notices);
+  /// What one line said, for the lines that follow: as settle_bus(), and what lost is told at once.
+  Result<Settings> settings_for_lines(Settings settings);
   /// As with_axis_option().
   std::vector<std::string> name_axes(std::vector<std::string> words, const CommandMatch& match);
 
   /// The family's data, loaded once. Errors as load_profile().
   Result<const drive::Profile*> profile(const std::string& family);
   /// As BusHolder::open().
-  Result<session::Session*> open(const Settings& settings) { return bus_.open(settings); }
+  Result<session::Session*> open(const Settings& settings);
   /// As BusHolder::open_ring_end().
   Result<std::unique_ptr<session::RingEnd>> open_ring_end(const Settings& settings);
   /// As BusHolder::open_register_end().
@@ -168,10 +171,12 @@ class Shell {
         : command(&of),
           settings(std::move(part.settings)),
           axes(std::move(part.axes)),
+          on_bus(std::move(part.on_bus)),
           line(shell, settings, context) {}
     const command::Command* command;
     Settings settings;
-    std::vector<const cabinet::Axis*> axes;  ///< That the nodes are; empty where they are just nodes.
+    std::vector<const cabinet::Axis*> axes;    ///< That the nodes are; empty where they are just nodes.
+    std::vector<const cabinet::Axis*> on_bus;  ///< All that the cabinet file has on the bus.
     command::Context context;
     RunningLine line;
     bool family_found = false;  ///< The line does not name it.
@@ -194,8 +199,11 @@ class Shell {
   void tell_order(const session::Session& session, std::uint8_t node, std::string_view order);
   void tell_family(const Run& run);
   Outcome perform_parsed(const ParsedLine& line, const Settings& settings);
+  Outcome perform_parts(const ParsedLine& line, const Settings& settings, std::vector<std::string>& notices);
   struct PartRun;
   Result<void> check_parts(const ParsedLine& line, const std::vector<LinePart>& parts);
+  void tell_place(const Run& run);
+  void keep_restarts();
   std::vector<Outcome> perform_in_turn(const ParsedLine& line, std::vector<LinePart> parts);
   std::vector<Outcome> perform_side_by_side(const ParsedLine& line, std::vector<LinePart> parts);
   std::vector<Outcome> perform_joined(const ParsedLine& line, std::vector<LinePart> parts);

@@ -118,18 +118,33 @@ void Shell::tell_order(const session::Session& session, std::uint8_t node, std::
 
 void Shell::note_family(const session::Session& session, std::span<const std::uint8_t> nodes,
                         const drive::Profile* profile) {
-  if (profile == nullptr || !console_->is_verbose()) return;
+  if (profile == nullptr) return;
+  if (auto* watch = bus_.restarts(session))
+    for (const auto node : nodes)
+      if (node != 0) watch->learn(node, *profile);
+  if (!console_->is_verbose()) return;
   const auto turn = take_turn();
   for (const auto node : nodes) noted_families_[{session::canonical_url(session.url()), node}] = profile;
 }
 
+/// Where the line goes, and who said so.
+void Shell::tell_place(const Run& run) {
+  const auto& settings = run.settings;
+  const auto bus_by = settings.of_cabinet ? "the cabinet file" : name_of(settings.bus_from, "--bus");
+  console_->detail(settings.nodes.empty()
+                       ? fmt::format("bus {}: named by {}", printable(settings.bus), bus_by)
+                       : fmt::format("bus {}: named by {}; nodes {}: named by {}", printable(settings.bus),
+                                     bus_by, printable(settings.nodes),
+                                     name_of(settings.nodes_from, "--node")));
+}
+
 void Shell::tell_family(const Run& run) {
   const auto& settings = run.settings;
-  const auto* why = run.family_guessed     ? "the identity of the drive fits it, a guess"
-                    : run.family_found     ? "as it was said of this drive before"
-                    : settings.drive_typed ? "named by -d"
-                    : settings.of_cabinet  ? "that of the axis in the cabinet file"
-                                           : "set before this line, or by $SERVOCTL_DRIVE";
+  const auto why = run.family_guessed ? std::string("the identity of the drive fits it, a guess")
+                   : run.family_found ? "as it was said of this drive before"
+                   : settings.of_cabinet
+                       ? "that of the axis in the cabinet file"
+                       : fmt::format("named by {}", name_of(settings.drive_from, "--drive"));
   const auto& profile = *run.context.profile;
   if (profile.data_sheet.empty())
     return console_->detail(
@@ -141,8 +156,8 @@ void Shell::tell_family(const Run& run) {
 Result<const cabinet::Cabinet*> Shell::cabinet(const Settings& settings) {
   auto found = cabinet_.get(settings);
   if (found && *found != nullptr && console_->is_verbose() && !std::exchange(cabinet_told_, true))
-    console_->detail(
-        fmt::format("cabinet file {}, axes: {}", printable((*found)->file.string()), (*found)->axes.size()));
+    console_->detail(fmt::format("cabinet file {}, named by {}, axes: {}", printable((*found)->file.string()),
+                                 name_of(settings.cabinet_from, "--cabinet"), (*found)->axes.size()));
   return found;
 }
 

@@ -51,6 +51,7 @@ std::optional<Errc> Shell::tell_energised_at_end() {
 
 int Shell::close(int code) {
   hear_last_line();
+  keep_restarts();
   // Here, so that a signal that comes while nobody reads finds the bus still open.
   console_->wait_for_reader();
   const bool ends_by_signal = cancelled() && (signal_interrupts_ || bus_.leaves_power());

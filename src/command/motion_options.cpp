@@ -40,6 +40,7 @@ Result<std::uint8_t> one_node(const Context& context) {
 
 Result<motion::MotionOptions> motion_options(const Context& context, const Arguments& arguments) {
   motion::MotionOptions out;
+  out.state_folder = context.state_folder;
   out.speed_limit = arguments.text("--limit");
   out.acceleration = arguments.text("--accel");
   out.max_torque = arguments.text("--max-torque");

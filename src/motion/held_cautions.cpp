@@ -60,10 +60,12 @@ drive::Use Purpose::exposure() const {
 }
 
 Result<std::optional<double>> setting_of(session::Session& session, const MotionUnits& units,
-                                         const std::string& name) {
+                                         const std::string& name, const OwedValues& owed) {
   const auto object = units.object(name);
   if (!object) return std::optional<double>();
-  const auto answer = session.upload(units.node(), *object);
+  auto answer = session.upload(units.node(), *object);
+  const auto waiting = std::ranges::find(owed, *object, &session::OwedValue::object);
+  if (answer && waiting != owed.end()) answer = waiting->in_force.value_or(Bytes());
   if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
   if (!answer || answer->empty()) return std::optional<double>();
   const auto meaning = drive::fitted(units.meaning(*object), answer->size());
@@ -73,7 +75,7 @@ Result<std::optional<double>> setting_of(session::Session& session, const Motion
 }
 
 Result<std::vector<HeldCaution>> held_cautions(session::Session& session, const MotionUnits& units,
-                                               const PanelValues& panel,
+                                               const PanelValues& panel, const OwedValues& owed,
                                                const std::function<bool(const drive::Caution&)>& concerns) {
   std::vector<HeldCaution> out;
   std::map<std::string, std::optional<double>> known;
@@ -84,7 +86,7 @@ Result<std::vector<HeldCaution>> held_cautions(session::Session& session, const 
       continue;
     }
     if (known.count(rule.name) == 0) {
-      const auto read = setting_of(session, units, rule.name);
+      const auto read = setting_of(session, units, rule.name, owed);
       if (!read) return fail(read.error());
       const auto told = panel.find(rule.name);
       known[rule.name] = !*read && told != panel.end() ? static_cast<double>(told->second) : *read;

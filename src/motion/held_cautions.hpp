@@ -10,6 +10,7 @@
 
 #include "drive/caution.hpp"
 #include "motion/motion_units.hpp"
+#include "session/owed_restarts.hpp"
 
 namespace servoctl::motion {
 
@@ -31,15 +32,18 @@ struct HeldCaution {
   bool unread = false;  ///< Its parameter could not be read, and nobody told its value.
 };
 
-/// The number that a parameter or object holds, for rules of the family; empty where it has no object, or the
-/// drive refuses to give it.
+/// What a drive has stored, and goes by only after a restart.
+using OwedValues = std::vector<session::OwedValue>;
+
+/// The number of a parameter or object that the drive goes by, for rules of the family: not what is `owed`.
+/// Empty where it has no object, the drive refuses to give it, or nobody knows what is in force.
 Result<std::optional<double>> setting_of(session::Session& session, const MotionUnits& units,
-                                         const std::string& name);
+                                         const std::string& name, const OwedValues& owed);
 
 /// The cautions of the family, of those that `concerns` selects, that are true or whose parameter cannot be
 /// read. Only reads.
 Result<std::vector<HeldCaution>> held_cautions(session::Session& session, const MotionUnits& units,
-                                               const PanelValues& panel,
+                                               const PanelValues& panel, const OwedValues& owed,
                                                const std::function<bool(const drive::Caution&)>& concerns);
 
 /// Errc::refused, with the parameter to change, for the first of these that does not allow the purpose.

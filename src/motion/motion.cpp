@@ -12,6 +12,7 @@
 #include "motion/other_axes.hpp"
 #include "motion/producer_claim.hpp"
 #include "session/option_scope.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -76,6 +77,8 @@ Result<void> Motion::find_watchdog() {
   watchdog_found_ = true;
   return {};
 }
+
+OwedValues Motion::owed() const { return show::owed_values(*session_, options_.state_folder, node_); }
 
 Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
   auto items = look_at_drive(chinese);

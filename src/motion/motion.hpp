@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -30,6 +31,7 @@ struct MotionOptions {
   std::string max_following_error;       ///< Of 60F4h.
   std::string window;                    ///< Of 6064h.
   std::function<void(const MotionSample&)> on_sample;
+  std::filesystem::path state_folder;  ///< Where it is kept what waits for a restart; may be empty.
   /// Increments in one turn that were told for this drive earlier: they decide what speed needs no --limit,
   /// and convert nothing.
   std::optional<double> supposed_turn;
@@ -76,13 +78,15 @@ class Motion {
   /// What the motion is for: called by plan_…(). Errc::refused, with what to change, where a setting of the
   /// drive makes it impossible: a homing method whose switch the drive ignores.
   Result<void> intend(const Purpose& purpose);
+  /// What the drive has stored, and goes by after its next restart.
+  OwedValues owed() const;
   /// Which watchdog there is: only reads, and listens for up to kListening. look() and begin() do it as well.
   Result<void> find_watchdog();
   Result<std::vector<PreflightItem>> look(bool chinese);
   /// The part of look() that is about the drive alone.
   Result<std::vector<PreflightItem>> look_at_drive(bool chinese);
   /// What the motion is for, and what was said for its preflight.
-  PreflightRequest request() const { return {purpose_, options_.panel, options_.ignores_remote}; }
+  PreflightRequest request() const { return {purpose_, options_.panel, options_.ignores_remote, owed()}; }
 
   /// Looks once more, because a person may have taken time to answer: Errc::refused when somebody else has
   /// enabled the drive meanwhile. Then arms the watchdog, sets the mode, makes the targets harmless, writes

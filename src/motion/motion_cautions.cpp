@@ -11,7 +11,7 @@ namespace servoctl::motion {
 
 Result<void> Motion::intend(const Purpose& purpose) {
   purpose_ = purpose;
-  const auto held = held_cautions(*session_, *units_, options_.panel,
+  const auto held = held_cautions(*session_, *units_, options_.panel, owed(),
                                   [](const drive::Caution& rule) { return rule.is_rule(); });
   if (!held) return fail(held.error());
   return check_cautions(*held, *units_, purpose);
@@ -24,7 +24,7 @@ Result<std::vector<PreflightItem>> Motion::look_at_drive(bool chinese) {
 /// The least of what cautions say that hold, or may hold.
 Result<std::optional<double>> Motion::cap_of_cautions(ObjectAddress as,
                                                       std::string drive::Caution::*text) const {
-  const auto held = held_cautions(*session_, *units_, options_.panel,
+  const auto held = held_cautions(*session_, *units_, options_.panel, owed(),
                                   [text](const drive::Caution& rule) { return !(rule.*text).empty(); });
   if (!held) return fail(held.error());
   std::optional<double> out;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -13,6 +14,7 @@
 #include "motion/power.hpp"
 #include "report/catalogue.hpp"
 #include "show/caution_text.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -49,6 +51,7 @@ class Preflight {
   Result<std::vector<PreflightItem>> run() {
     if (const auto done = look_at_state(); !done) return fail(done.error());
     look_at_axes();
+    tell_owed();
     if (const auto done = look_at_needs(); !done) return fail(done.error());
     if (const auto done = look_at_objects(); !done) return fail(done.error());
     if (const auto done = look_at_cautions(); !done) return fail(done.error());
@@ -179,10 +182,17 @@ class Preflight {
     add(limit ? Weight::caution : Weight::good, "inputs", fmt::format("60FDh is 0x{:08X}: {}", word, text));
   }
 
+  void tell_owed() {
+    if (request_.owed.empty()) return;
+    add(Weight::caution, "restart",
+        fmt::format("stored, in force after a restart: {}",
+                    show::owed_text(&units_->profile(), node_, request_.owed, chinese_)));
+  }
+
   /// What has to be set before the drive listens to CANopen.
   Result<void> look_at_needs() {
     for (const auto& need : units_->profile().rules.nmt.needs) {
-      const auto now = setting_of(*session_, *units_, need.name);
+      const auto now = setting_of(*session_, *units_, need.name, request_.owed);
       if (!now) return fail(now.error());
       if (*now && **now != static_cast<double>(need.value))
         add(Weight::caution, need.name,
@@ -198,7 +208,7 @@ class Preflight {
     const auto concerns = [this](const drive::Caution& rule) {
       return !request_.purpose || rule.concerns_use(request_.purpose->exposure());
     };
-    const auto held = held_cautions(*session_, *units_, request_.panel, concerns);
+    const auto held = held_cautions(*session_, *units_, request_.panel, request_.owed, concerns);
     if (!held) return fail(held.error());
     for (const auto& [rule, unread] : *held) {
       const auto lead =

@@ -31,6 +31,7 @@ struct PreflightRequest {
   std::optional<Purpose> purpose = {};  ///< Cautions of other motions are left out; empty: none is.
   PanelValues panel = {};
   bool ignores_remote = false;  ///< Goes on although bit 9 of the statusword is 0.
+  OwedValues owed = {};         ///< What waits for a restart, so that the drive does not go by it.
 };
 
 /// What there is to know before the drive is energised: state, warnings, inputs, limits, the family's

@@ -259,6 +259,16 @@ report::Table change_table() {
   return table;
 }
 
+/// What the drive goes by until its restart is read before it is replaced: the session keeps it
+/// (session::OwedRestarts).
+void read_in_force(show::Desk& desk, std::span<const Change> changes) {
+  std::vector<session::SdoRequest> requests;
+  for (const auto& change : changes)
+    if (drive::meaning(change.target, change.node).effect == od::Effect::restart)
+      requests.push_back({.node = change.node, .object = change.target.address});
+  if (!requests.empty()) (void)desk.session->transfer(requests);
+}
+
 }  // namespace
 
 Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, const WriteOptions& options) {
@@ -272,6 +282,7 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, co
     return enables(change) || power_parameter(desk, change) != nullptr;
   });
   const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
+  read_in_force(desk, changes);
   const auto written = session::write_all(*desk.session, requests,
                                           options.read_back || options.keep || is_only_echoed(desk, changes));
   keeping.close(written);

@@ -1,0 +1,178 @@
+#include "show/owed_restart.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "base/calendar.hpp"
+#include "base/file.hpp"
+#include "base/regular_files.hpp"
+#include "base/text.hpp"
+#include "session/identify.hpp"
+#include "show/bus_name.hpp"
+#include "show/field_reader.hpp"
+#include "show/identity.hpp"
+#include "show/reading.hpp"
+
+namespace servoctl::show {
+namespace {
+
+namespace fs = std::filesystem;
+using report::Record;
+using report::Value;
+using session::OwedValue;
+
+constexpr std::uint64_t kVersion = 1;
+constexpr std::uintmax_t kMostBytes = 1U << 18U;
+
+Value hex_or_null(const std::optional<Bytes>& bytes) { return bytes ? Value(to_hex(*bytes)) : Value(); }
+
+std::string value_text(const drive::Target& target, std::uint8_t node, const Bytes& bytes, bool chinese) {
+  const auto decoded = decode_value({.node = node, .target = target, .type = {}}, bytes);
+  const auto& words = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
+  const auto* label = std::get_if<std::string>(&words.data());
+  return label == nullptr ? decoded.text : fmt::format("{} {}", decoded.text, *label);
+}
+
+std::string owed_name(const drive::Profile* profile, ObjectAddress object) {
+  const auto target = drive::target_at(profile, object);
+  return target.parameter != nullptr ? target.parameter->id : to_string(object);
+}
+
+tl::unexpected<Error> damaged(std::string message) {
+  return fail(Errc::file, std::move(message), "delete the file; it only says what waits for a restart");
+}
+
+Result<OwedValue> value_of(const Value& record, const std::string& file) {
+  FieldReader fields(record, file);
+  OwedValue out;
+  out.object = {static_cast<std::uint16_t>(fields.number("index", true).value_or(0) & 0xFFFFU),
+                static_cast<std::uint8_t>(fields.number("sub", true).value_or(0) & 0xFFU)};
+  const auto stored = parse_hex_bytes(fields.text("stored", true));
+  const auto in_force = fields.text("in_force");
+  if (!in_force.empty()) out.in_force = parse_hex_bytes(in_force);
+  if (!stored || (!in_force.empty() && !out.in_force)) fields.refuse("stored");
+  if (fields.error()) return damaged(*fields.error());
+  out.stored = *stored;
+  return out;
+}
+
+}  // namespace
+
+OwedRestartFile::OwedRestartFile(const fs::path& state_folder, std::string_view bus_url, std::uint8_t node)
+    : node_(node) {
+  if (!state_folder.empty())
+    path_ = state_folder / fmt::format("restart-{}-node-{}.json", bus_name(bus_url), node);
+}
+
+bool OwedRestartFile::is_there() const {
+  std::error_code error;
+  return !path_.empty() && fs::exists(fs::symlink_status(path_, error));
+}
+
+Result<std::optional<OwedRestart>> OwedRestartFile::read() const {
+  const RegularFilesOnly regular;
+  if (!is_there()) return std::optional<OwedRestart>();
+  const auto file = path_.string();
+  const auto text = read_file(path_, kMostBytes);
+  if (!text) return fail(text.error());
+  const auto document = report::parse_json(*text, file);
+  if (!document) return damaged(document.error().message);
+  FieldReader fields(*document, file);
+  if (fields.number("servoctl_restart", true).value_or(kVersion) != kVersion)
+    fields.refuse("servoctl_restart");
+  if (fields.number("node", true).value_or(node_) != node_) fields.refuse("node");
+  const auto* inside = report::find(*document, "identity");
+  auto identity = inside == nullptr ? std::nullopt : identity_of(*inside, node_);
+  const auto* values = report::find(*document, "values");
+  const auto* list = values == nullptr ? nullptr : std::get_if<report::List>(&values->data());
+  if (!identity) fields.refuse("identity");
+  if (list == nullptr) fields.refuse("values");
+  if (fields.error()) return damaged(*fields.error());
+  OwedRestart out{.identity = std::move(*identity), .values = {}};
+  for (const auto& one : *list) {
+    auto value = value_of(one, file);
+    if (!value) return fail(value.error());
+    out.values.push_back(std::move(*value));
+  }
+  return std::optional(std::move(out));
+}
+
+Result<void> OwedRestartFile::write(const OwedRestart& owed) const {
+  const RegularFilesOnly regular;
+  report::List list;
+  for (const auto& value : owed.values)
+    list.emplace_back(Record{{"index", std::uint64_t{value.object.index}},
+                             {"sub", std::uint64_t{value.object.sub}},
+                             {"in_force", hex_or_null(value.in_force)},
+                             {"stored", to_hex(value.stored)}});
+  const Record document{{"servoctl_restart", kVersion},
+                        {"node", std::uint64_t{node_}},
+                        {"time", utc_now_text()},
+                        {"identity", identity_record(lasting(owed.identity))},
+                        {"values", std::move(list)}};
+  return write_file_atomically(path_, report::to_json(document) + "\n");
+}
+
+void OwedRestartFile::remove() const {
+  std::error_code error;
+  fs::remove(path_, error);
+}
+
+std::vector<OwedValue> owed_values(session::Session& session, const fs::path& state_folder,
+                                   std::uint8_t node) {
+  const auto kept = OwedRestartFile(state_folder, session.url(), node).read();
+  if (!kept || !*kept) return {};
+  const auto now = session::read_identity(session, node);
+  return now && !change_of((*kept)->identity, *now).empty() ? std::vector<OwedValue>() : (*kept)->values;
+}
+
+std::string owed_text(const drive::Profile* profile, std::uint8_t node, const std::vector<OwedValue>& values,
+                      bool chinese) {
+  std::string out;
+  for (const auto& value : values) {
+    const auto target = drive::target_at(profile, value.object);
+    const auto stored = value_text(target, node, value.stored, chinese);
+    const auto name = owed_name(profile, value.object);
+    append(out,
+           value.in_force ? fmt::format("{} = {} ({} in force)", name, stored,
+                                        value_text(target, node, *value.in_force, chinese))
+                          : fmt::format("{} = {}", name, stored),
+           ", ");
+  }
+  return out;
+}
+
+std::vector<std::string> owed_names(const drive::Profile* profile, const std::vector<OwedValue>& values) {
+  std::vector<std::string> out;
+  for (const auto& value : values) out.push_back(owed_name(profile, value.object));
+  return out;
+}
+
+report::List owed_records(const drive::Profile* profile, const std::vector<OwedValue>& values) {
+  report::List out;
+  for (const auto& value : values) {
+    const auto target = drive::target_at(profile, value.object);
+    out.emplace_back(Record{{"index", std::uint64_t{value.object.index}},
+                            {"sub", std::uint64_t{value.object.sub}},
+                            {"id", target.parameter != nullptr ? Value(target.parameter->id) : Value()},
+                            {"in_force", hex_or_null(value.in_force)},
+                            {"stored", to_hex(value.stored)}});
+  }
+  return out;
+}
+
+std::string owed_notice(const Desk& desk, std::uint8_t node) {
+  const auto values = owed_values(desk, node);
+  if (values.empty()) return {};
+  const auto what = owed_text(desk.profile, node, values, desk.speaks_chinese());
+  return desk.session->can() != nullptr
+             ? fmt::format(
+                   "node {}: stored, in force after a restart: {}; `nmt reset -n {} --wait` restarts it",
+                   node, what, node)
+             : fmt::format(
+                   "node {}: stored, in force after a restart: {}; switch it off and on, then "
+                   "`status --restarted -n {}`",
+                   node, what, node);
+}
+
+}  // namespace servoctl::show

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/result.hpp"
+#include "drive/profile.hpp"
+#include "report/value.hpp"
+#include "session/owed_restarts.hpp"
+#include "show/desk.hpp"
+
+namespace servoctl::show {
+
+/// What of one drive waits for a restart, as it is kept from one line, and one session, to the next.
+struct OwedRestart {
+  session::Identity identity;
+  std::vector<session::OwedValue> values;
+};
+
+/// The file in the folder for state that holds it: one for each bus, however that was written, and node.
+class OwedRestartFile {
+ public:
+  OwedRestartFile(const std::filesystem::path& state_folder, std::string_view bus_url, std::uint8_t node);
+
+  bool is_there() const;
+  /// Empty when there is none. Errc::file for one that is damaged.
+  Result<std::optional<OwedRestart>> read() const;
+  /// Errc::file.
+  Result<void> write(const OwedRestart& owed) const;
+  void remove() const;
+
+ private:
+  std::uint8_t node_;
+  std::filesystem::path path_;
+};
+
+/// The values of a node of the desk's session that are stored and come into force with its next restart,
+/// where it is the drive that they are kept of: it is asked who it is only where something is kept.
+std::vector<session::OwedValue> owed_values(session::Session& session,
+                                            const std::filesystem::path& state_folder, std::uint8_t node);
+inline std::vector<session::OwedValue> owed_values(const Desk& desk, std::uint8_t node) {
+  return owed_values(*desk.session, desk.state_folder, node);
+}
+
+/// `Pn0601 = 0 (1 in force)`, one after the other; in Chinese the labels are.
+std::string owed_text(const drive::Profile* profile, std::uint8_t node,
+                      const std::vector<session::OwedValue>& values, bool chinese);
+/// `Pn0601`, for each.
+std::vector<std::string> owed_names(const drive::Profile* profile,
+                                    const std::vector<session::OwedValue>& values);
+/// One record for each: `index sub id in_force stored`, the two as raw bytes.
+report::List owed_records(const drive::Profile* profile, const std::vector<session::OwedValue>& values);
+/// What is said of a node that waits; empty where it does not.
+std::string owed_notice(const Desk& desk, std::uint8_t node);
+
+}  // namespace servoctl::show

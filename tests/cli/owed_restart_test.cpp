@@ -1,0 +1,111 @@
+// Values that a drive has stored and goes by after its next restart: kept until that is seen, and shown.
+#include "show/owed_restart.hpp"
+
+#include "axis_lines.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+class OwedRestart : public AxisLines {
+ protected:
+  OwedRestart() { begin(); }
+  /// A program of its own, with the folder for state of those before it.
+  void begin() {
+    shell.reset();
+    Shell::Options options;
+    options.drive_folders = {fs::path(source_dir()) / "eds"};
+    options.clock = sim::SimBus::Clock::virtual_time;
+    options.state_folder = folder / "state";
+    fs::create_directories(options.state_folder);
+    shell = std::make_unique<Shell>(console, options);
+    shell->stay_open(true);
+  }
+  bool owes(std::string_view place) {
+    (void)run(fmt::format("status {} --json", place));
+    return says(R"("restart_owed":[{)") && says("stored, in force after a restart");
+  }
+};
+
+constexpr const char* kDrive = "-n 1 -d gsd600 -b sim:gsd600@1";
+
+TEST_F(OwedRestart, AWriteThatWaitsIsShownUntilTheRestartIsSeen) {
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  EXPECT_EQ(run(fmt::format("status {}", kDrive)), 0) << all();
+  EXPECT_TRUE(says("node 1: stored, in force after a restart: Pn0601 = 0 No (1 Yes in force)")) << all();
+  EXPECT_EQ(run(fmt::format("nmt reset-comm --wait --yes {}", kDrive)), 0) << all();
+  EXPECT_TRUE(owes(kDrive)) << "a reset of its communication alone is no restart: " << all();
+  EXPECT_EQ(run(fmt::format("nmt reset --wait --yes {}", kDrive)), 0) << all();
+  EXPECT_FALSE(owes(kDrive)) << all();
+}
+
+TEST_F(OwedRestart, TheOldValueWrittenAgainEndsIt) {
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  EXPECT_TRUE(owes(kDrive)) << all();
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  EXPECT_TRUE(owes(kDrive)) << all();
+  ASSERT_EQ(run(fmt::format("write 0x2003:2 1 {}", kDrive)), 0) << all();
+  EXPECT_FALSE(owes(kDrive)) << all();
+  ASSERT_EQ(run(fmt::format("param set Pn0601=1 {}", kDrive)), 0) << all();
+  EXPECT_FALSE(owes(kDrive)) << "what it held already waits for nothing: " << all();
+}
+
+TEST_F(OwedRestart, TheCautionOfWhatTheDriveGoesByStays) {
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  (void)run(fmt::format("jog 10rpm --for 100ms --turn 131072 --dry-run {}", kDrive));
+  (void)run(fmt::format("enable --yes {}", kDrive));
+  EXPECT_TRUE(says("stored, in force after a restart: Pn0601 = 0 No (1 Yes in force)")) << all();
+  EXPECT_TRUE(says("a wired emergency stop has no effect")) << all();
+  EXPECT_EQ(run(fmt::format("disable {}", kDrive)), 0) << all();
+  EXPECT_EQ(run(fmt::format("nmt reset --wait --yes {}", kDrive)), 0) << all();
+  (void)run(fmt::format("enable --yes {}", kDrive));
+  EXPECT_FALSE(says("in force after a restart")) << all();
+}
+
+TEST_F(OwedRestart, ACabinetSaysThatTheRestartIsToCome) {
+  shell->defaults().cabinet = folder / "cabinet.toml";
+  write(
+      "[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.lift]\nbus = \"main\"\nnode = 1\nfamily = \"gsd600\"\n"
+      "parameters = { Pn0601 = 0 }\n");
+  ASSERT_EQ(run("cabinet apply --yes"), 0) << all();
+  EXPECT_TRUE(says("axis lift: stored, in force after a restart: Pn0601")) << all();
+  EXPECT_EQ(run("cabinet plan"), 1) << all();
+  EXPECT_TRUE(says("nothing to write; needs a restart (Pn0601)")) << all();
+  EXPECT_EQ(run("cabinet plan --json"), 1) << all();
+  EXPECT_TRUE(says(R"("needs":[{"need":"restart","parameters":["Pn0601"]}])")) << all();
+  EXPECT_EQ(run("cabinet show"), 0) << all();
+  EXPECT_TRUE(says("0 restart")) << all();
+  EXPECT_EQ(run("cabinet show --json"), 0) << all();
+  EXPECT_TRUE(says(R"("restart_owed":["Pn0601"])")) << all();
+  EXPECT_EQ(run("nmt reset lift --wait --yes"), 0) << all();
+  EXPECT_EQ(run("cabinet plan"), 0) << all();
+  EXPECT_TRUE(says("nothing to do")) << all();
+}
+
+TEST_F(OwedRestart, OfARestoreAndOfABackupInLinesToo) {
+  const auto file = (folder / "values.json").string();
+  ASSERT_EQ(run(fmt::format("backup {} {}", file, kDrive)), 0) << all();
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  ASSERT_EQ(run(fmt::format("nmt reset --wait --yes {}", kDrive)), 0) << all();
+  ASSERT_FALSE(owes(kDrive)) << all();
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 --keep {}", kDrive)), 0) << all();
+  ASSERT_EQ(run(fmt::format("nmt reset --wait --yes {}", kDrive)), 0) << all();
+  ASSERT_EQ(run(fmt::format("restore {} --yes {}", file, kDrive)), 0) << all();
+  EXPECT_TRUE(owes(kDrive)) << all();
+  EXPECT_EQ(run(fmt::format("status --restarted {}", kDrive)), 0) << all();
+  EXPECT_FALSE(owes(kDrive)) << all();
+}
+
+TEST_F(OwedRestart, AnotherDriveAtTheNodeOwesNothing) {
+  const show::OwedRestartFile file(folder / "state", "sim:gsd600@1", 1);
+  session::Identity other;
+  other.node = 1;
+  other.serial = 4711;
+  ASSERT_TRUE(file.write({other, {{{0x2003, 2}, Bytes{1, 0}, Bytes{0, 0}}}}));
+  const auto read = file.read();
+  ASSERT_TRUE(read && *read);
+  EXPECT_EQ((*read)->values.front().in_force, (Bytes{1, 0}));
+  EXPECT_FALSE(owes(kDrive)) << all();
+}
+
+}  // namespace
+}  // namespace servoctl::cli
