@@ -5,7 +5,6 @@
 
 #include "base/object_address.hpp"
 #include "base/text.hpp"
-#include "cli/restriction.hpp"
 #include "command/registry.hpp"
 
 namespace servoctl::cli {
@@ -18,8 +17,6 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
   if (command.of_front_end)
     return fail(Errc::usage, fmt::format("'{}' is not allowed in a batch file", command.path),
                 "`for` repeats lines; a script runs several files");
-  if (const auto* restriction = Restriction::current())
-    if (const auto allowed = restriction->check_words(command, arguments); !allowed) return allowed;
   // A command that asks for more than reading is refused as a whole, before anything is opened.
   const auto effect = command.effect_with(arguments);
   if (settings.read_only && effect >= Effect::links && !settings.dry_run)
@@ -28,6 +25,19 @@ Result<void> check_allowed(const command::Command& command, const command::Argum
                             effect == Effect::links ? "an interface" : "a drive"),
                 "leave --read-only out to allow it");
   return {};
+}
+
+Result<void> check_whole_file(const command::Command& command, const Settings& settings) {
+  const bool whole = command.path.starts_with("cabinet ") && !includes(command.needs, Needs::bus);
+  const bool bus = settings.bus_from == Source::line;
+  if (!whole || (!bus && !settings.nodes_typed() && !settings.drive_typed())) return {};
+  return fail(Errc::usage,
+              fmt::format("{} is for lines that name their own nodes: bus, nodes and families stand in the "
+                          "cabinet file",
+                          bus                      ? "--bus"
+                          : settings.nodes_typed() ? "--node"
+                                                   : "--drive"),
+              "leave it out; axes are chosen by name: `--axis` or the word behind the command");
 }
 
 Result<void> check_words(const command::Command& command, command::Context& context,

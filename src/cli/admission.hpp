@@ -9,6 +9,9 @@ namespace servoctl::cli {
 /// Whether the command may run at all: --read-only refuses what changes a drive, and a line is no batch file.
 Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
                            const Settings& settings);
+/// Whether the line names no bus, node or family where the cabinet file says them: of a command for the whole
+/// file they would be ignored. Errc::usage.
+Result<void> check_whole_file(const command::Command& command, const Settings& settings);
 /// What a command's own check finds in the words of a line whose drives are asked for their family before it
 /// runs: told before anything is opened. `context` has no family yet.
 Result<void> check_words(const command::Command& command, command::Context& context,

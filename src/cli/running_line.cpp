@@ -122,29 +122,11 @@ Result<session::Session*> RunningLine::open_bus() {
   return opened;
 }
 
-namespace {
-
-/// A place that is typed in a line for the whole file would be ignored.
-Result<void> check_takes_file(const Settings& settings) {
-  const bool bus = settings.bus_from == Source::line;
-  if (!bus && !settings.nodes_typed() && !settings.drive_typed()) return {};
-  return fail(Errc::usage,
-              fmt::format("{} is for lines that name their own nodes: bus, nodes and families stand in the "
-                          "cabinet file",
-                          bus                      ? "--bus"
-                          : settings.nodes_typed() ? "--node"
-                                                   : "--drive"),
-              "leave it out; axes are chosen by name: `--axis` or the word behind the command");
-}
-
-}  // namespace
-
 Result<const cabinet::Cabinet*> RunningLine::cabinet() {
   const auto turn = shell_->take_turn();
   if (settings_->force_family)
     return fail(Errc::usage, "--force-family is for lines that name a family with -d",
                 "the cabinet file says what each axis is: change its `family` there");
-  if (const auto own = check_takes_file(*settings_); !own) return fail(own.error());
   auto found = shell_->cabinet(*settings_);
   if (found && *found == nullptr)
     return fail(Errc::usage, "there is no cabinet file",

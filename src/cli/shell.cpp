@@ -149,6 +149,7 @@ Result<void> Shell::make_ready(Run& run, const command::Arguments& arguments) {
 Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   const auto& command = *run.command;
   if (const auto allowed = check_allowed(command, arguments, run.settings); !allowed) return allowed;
+  if (const auto right = check_whole_file(command, run.settings); !right) return right;
   const bool on_bus = includes(command.needs, Needs::bus) && !command.opens_bus;
   // What is wrong in the line itself is told before a bus is opened or a drive asked for its family.
   if (on_bus && includes(command.needs, Needs::node) && run.settings.nodes.empty())

@@ -7,8 +7,6 @@
 
 #include "base/text.hpp"
 #include "cabinet/station.hpp"
-#include "can/socketcan.hpp"
-#include "cli/bus_choice.hpp"
 #include "cli/shell.hpp"
 #include "session/gateway_network.hpp"
 #include "session/open_bus.hpp"
@@ -24,57 +22,6 @@ using command::Needs;
 using report::List;
 using report::Table;
 using report::Value;
-
-/// A word without a colon that is no interface may be the name of a bus in the cabinet.
-bool may_name_bus(const std::string& bus) {
-  return !bus.empty() && bus.find(':') == std::string::npos && !can::is_interface(bus);
-}
-
-/// Both are given, and the bus is not the stronger one.
-bool file_rivals_bus(const Settings& settings) {
-  return !settings.bus.empty() && settings.cabinet_from != Source::folder &&
-         settings.cabinet_from >= settings.bus_from;
-}
-
-/// `-n all` beside a cabinet file means its axes only where the line goes by the file.
-void tell_all_of_bus(const command::Command& command, const Settings& settings,
-                     std::vector<std::string>& notices) {
-  if (!settings.nodes_typed() || !equals_nocase(settings.nodes, "all") || settings.bus.empty() ||
-      settings.bus_from == Source::line || !includes(command.needs, Needs::node))
-    return;
-  std::error_code error;
-  const auto file = cabinet::find_cabinet(std::filesystem::current_path(error));
-  if (!file.empty())
-    notices.push_back(fmt::format("all: the nodes of {} ({}), not the axes of {}",
-                                  name_of(settings.bus_from, "--bus"), settings.bus, file.string()));
-}
-
-/// What is shown while it runs, and what moves, is of one bus and family.
-Result<void> check_several(const command::Command& command, const command::Arguments& arguments,
-                           const std::vector<LinePart>& parts) {
-  if (parts.size() < 2) return {};
-  std::string first;
-  for (const auto* axis : parts.front().axes) append(first, axis->name, ",");
-  if (!command.one_file.empty() && arguments.has(command.one_file))
-    return fail(
-        Errc::usage,
-        fmt::format(
-            "'{}' writes {} for axes of one bus and one family at a time; these are of {} buses or families",
-            command.path, arguments.text(command.one_file), parts.size()),
-        command.path == "backup"
-            ? fmt::format("`cabinet backup` saves all axes; or a file each, such as -n {}", first)
-            : fmt::format("a file each, such as -n {}", first));
-  if (!command.goes_on && command.effect_with(arguments) != Effect::moves) return {};
-  return fail(
-      Errc::usage,
-      fmt::format("'{}' is for axes of one bus and one family at a time; these are of {} buses or families",
-                  command.path, parts.size()),
-      first.empty()     ? "name the bus: --bus " + parts.front().settings.bus
-      : command.goes_on ? fmt::format("it listens to one bus as it comes in: such as -n {}, and the "
-                                      "others in another terminal",
-                                      first)
-                        : fmt::format("such as -n {}", first));
-}
 
 /// Whether the parts are of several buses, and none of them asks: one question at a time. What may begin
 /// process data goes bus by bus: behind a part that has ended its bus has to be served.
@@ -121,59 +68,6 @@ void put_bus_into(Value& value, const std::string& bus) {
 }
 
 }  // namespace
-
-std::vector<std::string> Shell::name_axes(std::vector<std::string> words, const CommandMatch& match) {
-  if (match.command == nullptr || !includes(match.command->needs, Needs::node)) return words;
-  const auto after = match.first + match.used;
-  if (after >= words.size() || words[after].starts_with("-")) return words;
-  auto settings = options_.defaults;
-  for (std::size_t i = after; i < words.size(); ++i) {
-    constexpr std::string_view kOption = "--cabinet";
-    if (words[i] == kOption && i + 1 < words.size()) settings.cabinet = words[i + 1];
-    if (words[i].starts_with(std::string(kOption) + "="))
-      settings.cabinet = words[i].substr(kOption.size() + 1);
-  }
-  // A file that cannot be used is told when an axis is needed; the word may be no axis.
-  const auto known = cabinet_.get(settings);
-  if (!known || *known == nullptr) return words;
-  return with_axis_option(std::move(words), *match.command, after, **known);
-}
-
-Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const Settings& given,
-                                                   std::vector<std::string>& notices) {
-  const auto& command = *line.command;
-  const bool on_bus = includes(command.needs, Needs::bus);
-  const bool named = names_axes(given.nodes);
-  // The file may be the one that is to be made from this bus.
-  const bool rivals =
-      on_bus && !named && !command.opens_bus && command.path != "cabinet init" && file_rivals_bus(given);
-  if (on_bus && !named && !rivals) tell_all_of_bus(command, given, notices);
-  if (!named && !(on_bus && given.bus.empty()) && !may_name_bus(given.bus) && !rivals)
-    return std::vector<LinePart>();
-  const auto known = cabinet(given);
-  if (!known) return fail(known.error());
-  if (*known == nullptr) return std::vector<LinePart>();
-  const auto settings = rivals ? settle_bus(**known, given, notices) : given;
-  if (!settings) return fail(settings.error());
-  auto parts = parts_of(**known, command, line.arguments, *settings, notices);
-  if (parts)
-    if (const auto good = check_several(command, line.arguments, *parts); !good) return fail(good.error());
-  return parts;
-}
-
-Result<Settings> Shell::settings_for_lines(Settings settings) {
-  if (file_rivals_bus(settings)) {
-    const auto known = cabinet(settings);
-    if (!known) return fail(known.error());
-    std::vector<std::string> notices;
-    auto settled = settle_bus(**known, std::move(settings), notices);
-    if (!settled) return settled;
-    settings = std::move(*settled);
-    for (const auto& notice : notices) console_->note("notice: " + notice + "\n");
-  }
-  settings.keep_for_lines();
-  return settings;
-}
 
 /// One part of a line on its way.
 struct Shell::PartRun {
