@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "command/command.hpp"
-#include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/gateway_network.hpp"
 #include "session/identify.hpp"
@@ -42,31 +41,7 @@ bool confirmed(session::Session& session, const Before& before, NmtCommand comma
          session.can()->watch().state(before.node) == canopen::state_after(command);
 }
 
-/// How the nodes' heartbeats come, read before the command.
-struct Heartbeats {
-  Duration longest{};                ///< Of those that say it.
-  std::vector<std::uint8_t> silent;  ///< Say that they send none.
-};
-
-/// A node that is stopped answers no SDO: it may send heartbeats all the same.
-Heartbeats heartbeats_of(Context& context) {
-  std::vector<session::SdoRequest> requests;
-  for (const auto node : context.nodes)
-    requests.push_back({.node = node, .object = objects::kProducerHeartbeat, .size = 2});
-  const auto answers = context.session->transfer(requests);
-  Heartbeats out;
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    const auto node = context.nodes[i];
-    out.longest = std::max(out.longest, context.session->can()->watch().period(node));
-    if (!answers[i] || answers[i]->size() > 8) continue;
-    const auto period = std::chrono::milliseconds(load_le(*answers[i]) & 0xFFFFU);
-    out.longest = std::max<Duration>(out.longest, period);
-    if (period == Duration::zero()) out.silent.push_back(node);
-  }
-  return out;
-}
-
-Error unconfirmed(const Before& before, NmtCommand command, const Heartbeats& heartbeats,
+Error unconfirmed(const Before& before, NmtCommand command, const session::Heartbeats& heartbeats,
                   const canopen::NodeWatch& watch) {
   auto error = drive_error(Errc::timeout, before.node,
                            fmt::format("'{}' was sent but not confirmed", canopen::name(command)));
@@ -102,17 +77,6 @@ report::Table nmt_table(Context& context, std::span<const Before> before, NmtCom
                           result_of_nmt(entry, known)});
   }
   return table;
-}
-
-/// What starts or resets a node goes to one drive.
-Result<void> look_at_nodes(Context& context, NmtCommand command, std::vector<Before>& nodes) {
-  auto& session = *context.session;
-  if (const auto asked = session::ask_who_answers(session, nodes); !asked) return asked;
-  const auto least = is_reset(command) ? session::kBeforeMotion : session::kBeforeWrites;
-  if (const auto heard = session::settle_duplicates(session, context.nodes, least); !heard) return heard;
-  for (const auto node : context.nodes)
-    if (const auto single = session::refuse_duplicate(session, node); !single) return single;
-  return is_reset(command) ? session::hear_who_lives(session, nodes, kGuardPatience) : Result<void>();
 }
 
 /// Behind the command: whether anybody is there at all. Of a stopped node without heartbeat and guarding
@@ -209,12 +173,20 @@ Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtC
   if (is_reset(command))
     if (const auto answer = context.confirm(question_nmt(context.nodes, command)); !answer)
       return fail(answer.error());
-  const auto heartbeats = wait && !is_reset(command) ? heartbeats_of(context) : Heartbeats();
+  const auto heartbeats = wait && !is_reset(command)
+                              ? session::read_heartbeats(*context.session, context.nodes)
+                              : session::Heartbeats();
   auto before = session::look_from_now(*context.session, context.nodes);
   const bool named = context.nodes.front() != 0;
   const bool begins = is_reset(command) || command == NmtCommand::start;
-  if (named && begins)
-    if (const auto looked = look_at_nodes(context, command, before); !looked) return fail(looked.error());
+  if (named && begins) {
+    const auto single = session::hold_single(
+        *context.session, before, is_reset(command) ? session::kBeforeMotion : session::kBeforeWrites);
+    if (!single) return fail(single.error());
+  }
+  if (named && is_reset(command))
+    if (const auto heard = session::hear_who_lives(*context.session, before, kGuardPatience); !heard)
+      return fail(heard.error());
   for (auto& entry : before) {
     entry.boots = context.session->watch().boots(entry.node);
     entry.heartbeats = context.session->watch().heartbeats(entry.node);

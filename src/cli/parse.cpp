@@ -120,6 +120,20 @@ class LineParser {
     }
     if (const auto rest = app_.remaining(); !rest.empty()) return superfluous(rest.front());
     take_results();
+    return each_is_said_once();
+  }
+
+  /// Refuses an option that is given twice with two values.
+  Result<void> each_is_said_once() const {
+    for (const auto& [parameter, option, values] : bound_) {
+      const auto& given = option->results();
+      const bool every = parameter->kind == Kind::flag || parameter->many || parameter->repeats;
+      if (every || given.empty() || std::ranges::count(given, given.front()) == std::ssize(given)) continue;
+      return fail(Errc::usage,
+                  fmt::format("{}: {} is given twice: {} and {}", command_->path, parameter->name,
+                              given.front(), given.back()),
+                  "leave one of them out");
+    }
     return {};
   }
 

@@ -118,6 +118,8 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
   }
   if (arguments.has("--quiet") && arguments.has("--verbose"))
     return fail(Errc::usage, "--quiet and --verbose contradict each other", "leave one of them out");
+  if (arguments.has("--json") && arguments.text("--output") == "text")
+    return fail(Errc::usage, "--json and --output text contradict each other", "leave one of them out");
   apply_form(base, arguments);
   // What a restricted file says of itself is no consent.
   base.yes = base.yes || (arguments.has("--yes") && Restriction::current() == nullptr);

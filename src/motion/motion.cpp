@@ -47,6 +47,7 @@ Result<void> Motion::prepare() {
   units_ = std::make_unique<MotionUnits>(*session_, *profile_, node_, options_.turn, options_.encoder,
                                          options_.learned, options_.load);
   if (const auto& lost = units_->unanswered()) return fail(*lost);
+  if (const auto in_force = check_units_in_force(); !in_force) return in_force;
   monitor_ = std::make_unique<MotionMonitor>(*session_, *units_, node_);
   auto panel = checked_panel(*profile_, options_.panel);
   if (!panel) return fail(panel.error());

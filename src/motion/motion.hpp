@@ -160,6 +160,7 @@ class Motion {
   }
 
  private:
+  Result<void> check_units_in_force() const;
   Result<bool> supervise(const std::function<Result<bool>(const MotionSample&)>& done, Duration longest);
   Result<void> check_turn(const MotionSample& sample);
   Result<void> check_kept_turn(const MotionSample& sample, double shown);

@@ -6,8 +6,28 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
 #include "session/measure.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::motion {
+
+/// Where the drive goes by other numbers of its units than those that it holds, a motion would be another one
+/// than was asked for.
+Result<void> Motion::check_units_in_force() const {
+  if (options_.turn) return {};
+  const auto waiting = owed();
+  for (const auto& value : waiting)
+    for (const auto& [measure, ways] : profile_->rules.units)
+      for (const auto& way : ways) {
+        const auto objects = way.objects();
+        if (std::ranges::find(objects, value.object) == objects.end()) continue;
+        return fail(drive_error(
+            Errc::refused, node_, value.object,
+            fmt::format("what a turn of the motor is, is not known: stored, in force after a restart: {}",
+                        show::owed_text(profile_, node_, waiting, false)),
+            "restart the drive first; or say how many counts a turn has now: --turn"));
+      }
+  return {};
+}
 
 Result<void> Motion::intend(const Purpose& purpose) {
   purpose_ = purpose;

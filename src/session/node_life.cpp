@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "base/bytes.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
+#include "session/identify.hpp"
 #include "session/option_scope.hpp"
 
 namespace servoctl::session {
@@ -36,6 +38,16 @@ Result<void> ask_who_answers(Session& session, std::span<NodeLife> nodes) {
   return {};
 }
 
+Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration least) {
+  if (const auto asked = ask_who_answers(session, nodes); !asked) return asked;
+  std::vector<std::uint8_t> ids;
+  for (const auto& one : nodes) ids.push_back(one.node);
+  if (const auto heard = settle_duplicates(session, ids, least); !heard) return heard;
+  for (const auto node : ids)
+    if (const auto single = refuse_duplicate(session, node); !single) return single;
+  return {};
+}
+
 Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duration patience) {
   const auto heard = [&] {
     for (auto& one : nodes)
@@ -54,6 +66,22 @@ Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duratio
   }
   const auto waited = session.wait(heard, session.now() + patience);
   return waited ? Result<void>() : fail(waited.error());
+}
+
+Heartbeats read_heartbeats(Session& session, std::span<const std::uint8_t> nodes) {
+  std::vector<SdoRequest> requests;
+  for (const auto node : nodes)
+    requests.push_back({.node = node, .object = objects::kProducerHeartbeat, .size = 2});
+  const auto answers = session.transfer(requests);
+  Heartbeats out;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (auto* can = session.can()) out.longest = std::max(out.longest, can->watch().period(nodes[i]));
+    if (!answers[i] || answers[i]->size() > 8) continue;
+    const auto period = std::chrono::milliseconds(load_le(*answers[i]) & 0xFFFFU);
+    out.longest = std::max<Duration>(out.longest, period);
+    if (period == Duration::zero()) out.silent.push_back(nodes[i]);
+  }
+  return out;
 }
 
 }  // namespace servoctl::session

@@ -23,9 +23,22 @@ std::vector<NodeLife> look_from_now(const Session& session, std::span<const std:
 /// request (CiA 301, 7.3.2.2.1). Errc::bus and Errc::interrupted.
 Result<void> ask_who_answers(Session& session, std::span<NodeLife> nodes);
 
+/// Asks them, and hears whether two drives have one node-ID: what starts or resets a node goes to one drive.
+/// `least`: as that of settle_duplicates(). Errc::refused, and errors of the bus.
+Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration least);
+
 /// Waits until of each that is not known to be alive a boot-up, a heartbeat or an answer to node guarding was
 /// heard, at most for `patience`, or for the heartbeat period of a node where that is longer. Errors of the
 /// bus.
 Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duration patience);
+
+/// How heartbeats of nodes come.
+struct Heartbeats {
+  Duration longest{};                ///< Of those that say it.
+  std::vector<std::uint8_t> silent;  ///< Say that they send none.
+};
+
+/// Reads 1017h of all nodes; one that is stopped answers no SDO, and may send heartbeats all the same.
+Heartbeats read_heartbeats(Session& session, std::span<const std::uint8_t> nodes);
 
 }  // namespace servoctl::session

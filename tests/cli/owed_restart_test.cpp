@@ -61,6 +61,16 @@ TEST_F(OwedRestart, TheCautionOfWhatTheDriveGoesByStays) {
   EXPECT_FALSE(says("in force after a restart")) << all();
 }
 
+TEST_F(OwedRestart, NothingMovesByUnitsThatAreNotInForce) {
+  ASSERT_EQ(run(fmt::format("param set Pn0456=0 Pn0457=23 {}", kDrive)), 0) << all();
+  EXPECT_EQ(run(fmt::format("jog 10rpm --for 100ms --yes {}", kDrive)), 8) << all();
+  EXPECT_TRUE(says("what a turn of the motor is, is not known: stored, in force after a restart: Pn0456 = 0"))
+      << all();
+  EXPECT_EQ(run(fmt::format("nmt reset --wait --yes {}", kDrive)), 0) << all();
+  (void)run(fmt::format("jog 10rpm --for 100ms --yes {}", kDrive));
+  EXPECT_FALSE(says("in force after a restart")) << all();
+}
+
 TEST_F(OwedRestart, ACabinetSaysThatTheRestartIsToCome) {
   shell->defaults().cabinet = folder / "cabinet.toml";
   write(

@@ -127,6 +127,18 @@ TEST(ParseLine, KnowsTheOptionsThatStandWithoutACommand) {
   EXPECT_TRUE(parse_line({"help", "--for"}));
 }
 
+TEST(ParseLine, RefusesAnOptionWithTwoValues) {
+  for (const Words& words : {Words{"status", "-n", "1", "--node", "2"},
+                             {"status", "-b", "can0", "--bus=can1"},
+                             {"read", "0x1000", "--timeout", "1s", "--timeout", "2s"}}) {
+    const auto line = parse_line(words);
+    ASSERT_FALSE(line) << words[1];
+    EXPECT_EQ(line.error().code, Errc::usage);
+    EXPECT_NE(line.error().message.find("is given twice: "), std::string::npos) << line.error().message;
+  }
+  EXPECT_TRUE(parse_line({"status", "-n", "1", "--node", "1"}));
+}
+
 TEST(ParseLine, TakesOptionsBehindTwoDashesWhenEveryArgumentHasItsValue) {
   const auto line = parse_line({"jog", "--", "-30rpm", "--for", "2s", "-n", "1"});
   ASSERT_TRUE(line) << line.error().message;

@@ -36,6 +36,10 @@ def tour(document, fewest):
                 if export:
                     env[export.group(1)] = export.group(2)
                     continue
+                unset = re.match(r"\$ unset (\w+)$", line)
+                if unset:
+                    env.pop(unset.group(1), None)
+                    continue
                 done = subprocess.run(["bash", "-c", line[2:]], env=env, cwd=home, capture_output=True, text=True, timeout=60)
                 out += (done.stdout + done.stderr).replace(source + "/", "").replace(home + "/", "~/").splitlines()
                 ran += 1
