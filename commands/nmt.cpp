@@ -1,4 +1,5 @@
 #include "canopen/nmt.hpp"
+#include "canopen/node_list.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "session/identify.hpp"
 #include "session/node_life.hpp"
 #include "session/stretch.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -67,16 +69,37 @@ std::string_view result_of_nmt(const Before& entry, const std::optional<bool>& c
 
 report::Table nmt_table(Context& context, std::span<const Before> before, NmtCommand command, bool waited) {
   report::Table table;
-  table.columns = {{"node"}, {"command"}, {"confirmed"}, {"state"}, {"result"}};
+  // Two words for one thing.
+  const auto unless = [](bool told) { return told ? report::Show::json : report::Show::everywhere; };
+  table.columns = {
+      {"node"}, {"command"}, {"confirmed", "", unless(!waited)}, {"state"}, {"result", "", unless(waited)}};
   for (const auto& entry : before) {
     const auto state = waited ? context.session->can()->watch().state(entry.node) : std::nullopt;
     auto known = waited ? std::optional(confirmed(*context.session, entry, command)) : std::nullopt;
-    if (!waited && entry.node != 0 && !entry.alive) known = false;
+    if (!waited && entry.node != 0 && !entry.alive && context.session->can() != nullptr) known = false;
     table.rows.push_back({entry.node == 0 ? Value("all") : Value(entry.node), canopen::name(command),
                           known ? Value(*known) : Value(), state ? Value(canopen::name(*state)) : Value(),
                           result_of_nmt(entry, known)});
   }
   return table;
+}
+
+Result<void> wait_for_boots(session::Session& session, std::span<const Before> nodes) {
+  const auto all = [&] {
+    return std::ranges::all_of(
+        nodes, [&](const Before& one) { return session.watch().boots(one.node) > one.boots; });
+  };
+  const auto waited = session.wait(all, session.now() + kBootPatience);
+  return waited ? Result<void>() : fail(waited.error());
+}
+
+/// Behind a reset of all nodes: what waited for it is forgotten only where the restart is heard.
+Result<void> hear_owed_restarts(const Context& context) {
+  auto& session = *context.session;
+  std::vector<std::uint8_t> owing;
+  for (const auto node : canopen::every_node_id())
+    if (show::OwedRestartFile(context.state_folder, session.url(), node).is_there()) owing.push_back(node);
+  return wait_for_boots(session, session::look_from_now(session, owing));
 }
 
 /// Behind the command: whether anybody is there at all. Of a stopped node without heartbeat and guarding
@@ -86,8 +109,15 @@ Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Bef
   const bool stops = command == NmtCommand::stop;
   if (!stops && !is_reset(command))
     if (const auto asked = session::ask_who_answers(session, nodes); !asked) return asked;
-  const auto patience = is_reset(command) ? kBootPatience : kGuardPatience;
-  if (const auto heard = session::hear_who_lives(session, nodes, patience); !heard) return heard;
+  // Over a gateway a node that answers no SDO cannot be heard.
+  if (stops && session.can() == nullptr) return {};
+  if (is_reset(command))
+    if (const auto booted = wait_for_boots(session, nodes); !booted) return booted;
+  if (const auto heard = session::hear_who_lives(session, nodes, kGuardPatience); !heard) return heard;
+  // A stopped node is heard to be two only once it has started.
+  for (const auto& entry : nodes)
+    if (auto single = session::refuse_duplicate(session, entry.node); !stops && !single)
+      context.errors.push_back(std::move(single.error()));
   for (const auto& entry : nodes) {
     if (entry.alive) continue;
     auto error = drive_error(
@@ -166,38 +196,9 @@ Result<void> check_wait(const Context& context, bool wait) {
   return {};
 }
 
-Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtCommand command) {
-  if (context.dry_run) return planned_frames(context, command);
-  const bool wait = arguments.has("--wait");
-  if (const auto may = check_wait(context, wait); !may) return fail(may.error());
-  if (is_reset(command))
-    if (const auto answer = context.confirm(question_nmt(context.nodes, command)); !answer)
-      return fail(answer.error());
-  const auto heartbeats = wait && !is_reset(command)
-                              ? session::read_heartbeats(*context.session, context.nodes)
-                              : session::Heartbeats();
-  auto before = session::look_from_now(*context.session, context.nodes);
-  const bool named = context.nodes.front() != 0;
-  const bool begins = is_reset(command) || command == NmtCommand::start;
-  if (named && begins) {
-    const auto single = session::hold_single(
-        *context.session, before, is_reset(command) ? session::kBeforeMotion : session::kBeforeWrites);
-    if (!single) return fail(single.error());
-  }
-  if (named && is_reset(command))
-    if (const auto heard = session::hear_who_lives(*context.session, before, kGuardPatience); !heard)
-      return fail(heard.error());
-  for (auto& entry : before) {
-    entry.boots = context.session->watch().boots(entry.node);
-    entry.heartbeats = context.session->watch().heartbeats(entry.node);
-    if (const auto sent = send_nmt(*context.session, command, entry.node); !sent) return fail(sent.error());
-  }
-  if (!wait) {
-    if (named)
-      if (const auto looked = look_for_life(context, command, before); !looked) return fail(looked.error());
-    tell_reset(context, before, command, false);
-    return report::Value(nmt_table(context, before, command, false));
-  }
+/// Until a heartbeat or a boot-up of each confirms the command.
+Result<report::Value> wait_for_all(Context& context, NmtCommand command, std::span<const Before> before,
+                                   const session::Heartbeats& heartbeats) {
   const auto done = [&] {
     return std::ranges::all_of(before,
                                [&](const Before& b) { return confirmed(*context.session, b, command); });
@@ -213,6 +214,46 @@ Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtC
     if (!confirmed(*context.session, entry, command))
       context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->can()->watch()));
   return report::Value(nmt_table(context, before, command, true));
+}
+
+/// Whose drives they are is seen before what begins something is sent.
+Result<void> look_before(Context& context, NmtCommand command, std::vector<Before>& nodes) {
+  auto& session = *context.session;
+  if (!is_reset(command) && command != NmtCommand::start) return {};
+  const auto least = is_reset(command) ? session::kBeforeMotion : session::kBeforeWrites;
+  if (const auto single = session::hold_single(session, nodes, least); !single) return single;
+  return is_reset(command) ? session::hear_who_lives(session, nodes, kGuardPatience) : Result<void>();
+}
+
+Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtCommand command) {
+  if (context.dry_run) return planned_frames(context, command);
+  const bool wait = arguments.has("--wait");
+  if (const auto may = check_wait(context, wait); !may) return fail(may.error());
+  if (is_reset(command))
+    if (const auto answer = context.confirm(question_nmt(context.nodes, command)); !answer)
+      return fail(answer.error());
+  const auto heartbeats = wait && !is_reset(command)
+                              ? session::read_heartbeats(*context.session, context.nodes)
+                              : session::Heartbeats();
+  auto before = session::look_from_now(*context.session, context.nodes);
+  const bool named = context.nodes.front() != 0;
+  if (named)
+    if (const auto looked = look_before(context, command, before); !looked) return fail(looked.error());
+  for (auto& entry : before) {
+    entry.boots = context.session->watch().boots(entry.node);
+    entry.heartbeats = context.session->watch().heartbeats(entry.node);
+    if (is_reset(command)) entry.alive = false;
+    if (const auto sent = send_nmt(*context.session, command, entry.node); !sent) return fail(sent.error());
+  }
+  if (!wait) {
+    if (named)
+      if (const auto looked = look_for_life(context, command, before); !looked) return fail(looked.error());
+    if (!named && command == NmtCommand::reset_node)
+      if (const auto heard = hear_owed_restarts(context); !heard) return fail(heard.error());
+    tell_reset(context, before, command, false);
+    return report::Value(nmt_table(context, before, command, false));
+  }
+  return wait_for_all(context, command, before, heartbeats);
 }
 
 template <NmtCommand command>

@@ -240,9 +240,10 @@ List overview_row(const Context& context, std::uint8_t node, std::span<const Res
 }
 
 Result<report::Value> run_status(Context& context, const Arguments& arguments) {
-  if (arguments.has("--restarted"))
-    for (const auto node : context.nodes)
-      show::OwedRestartFile(context.state_folder, context.session->url(), node).remove();
+  const bool restarted = arguments.has("--restarted") && !context.dry_run;
+  if (restarted && context.read_only)
+    return fail(Errc::refused, "--restarted changes what servoctl remembers, and --read-only forbids it",
+                "leave one of them out");
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes)
     for (std::size_t i = 0; i < kCount; ++i)
@@ -258,6 +259,8 @@ Result<report::Value> run_status(Context& context, const Arguments& arguments) {
     if (refused)
       context.notices.push_back(
           fmt::format("node {} has no statusword: it is not a CiA 402 drive", context.nodes[i]));
+    if (restarted && (mine[0] || refused))
+      show::OwedRestartFile(context.state_folder, context.session->url(), context.nodes[i]).remove();
     if (!mine[0] && !refused) {
       context.errors.push_back(mine[0].error());
       continue;

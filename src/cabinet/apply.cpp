@@ -244,8 +244,6 @@ class Applying {
     }
     for (const auto& run : runs_)
       if (run.end == AxisEnd::applied && options_->keep) tell_unstated(run);
-    for (const auto& run : runs_)
-      if (run.end == AxisEnd::applied) tell_owed(run);
     const bool working = !options_->keep && std::any_of(runs_.begin(), runs_.end(), [](const AxisRun& run) {
       return run.end == AxisEnd::applied;
     });
@@ -253,14 +251,6 @@ class Applying {
       desk_->notices.emplace_back(
           "--no-keep: the values are gone after power-off; the next `cabinet plan` finds them as the file says, "
           "and `store` keeps them");
-  }
-
-  /// What was written and waits for a restart.
-  void tell_owed(const AxisRun& run) {
-    for (const auto& need : run.look->plan->needs)
-      if (need.kind == AxisNeed::Kind::restart)
-        desk_->notices.push_back(fmt::format("axis {}: stored, in force after a restart: {}",
-                                             run.look->axis->name, fmt::join(need.names, ", ")));
   }
 
   void tell_unstated(const AxisRun& run) {

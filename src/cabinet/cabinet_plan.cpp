@@ -281,7 +281,7 @@ Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks
     const auto names = fmt::format("{}", fmt::join(waiting, ","));
     return make_error(Errc::negative,
                       fmt::format("{}: values are stored and in force after a restart", names),
-                      fmt::format("`nmt reset -n {} --wait`, or switch off and on", names));
+                      fmt::format("restart the drives; `status -n {}` says how", names));
   }
   return make_error(
       Errc::negative,

@@ -10,6 +10,9 @@ namespace servoctl::canopen {
 
 namespace {
 
+/// A boot-up that comes later is not that of a reset command.
+constexpr Duration kLongestStart = std::chrono::seconds(10);
+
 constexpr std::size_t kMostEmergencies = 8;
 constexpr ObjectAddress kHeartbeatTime{0x1017, 0};
 /// Command specifier of an initiate download request, in the upper three bits of byte 0 (CiA 301, 7.2.4.3.3).
@@ -43,18 +46,20 @@ void NodeWatch::on_frame(const can::Frame& frame, TimePoint now) {
     update_deadline();
   }
   if (const auto order = parse_nmt(frame)) on_command(order->node);  // By another master, as what follows.
-  on_sent(frame);
+  on_sent(frame, now);
 }
 
-void NodeWatch::on_nmt(const NmtMessage& message) {
+void NodeWatch::on_nmt(const NmtMessage& message, TimePoint now) {
   if (message.command != NmtCommand::reset_communication && message.command != NmtCommand::reset_node) return;
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    if (message.node == 0 || i == message.node)
-      nodes_[i].communication_only = message.command == NmtCommand::reset_communication;
+    if (message.node == 0 || i == message.node) {
+      nodes_[i].reset = message.command;
+      nodes_[i].reset_at = now;
+    }
 }
 
-void NodeWatch::on_sent(const can::Frame& frame) {
-  if (const auto message = parse_nmt(frame)) on_nmt(*message);
+void NodeWatch::on_sent(const can::Frame& frame, TimePoint now) {
+  if (const auto message = parse_nmt(frame)) on_nmt(*message, now);
   const bool asks_once = asks_for_state(frame) && !nodes_[watched_node_of(frame)].guarded;
   if (asks_once || writes_heartbeat_time(frame)) forget_period(watched_node_of(frame));
 }
@@ -88,7 +93,10 @@ void NodeWatch::on_error_control(const ErrorControl& message, TimePoint now) {
   node.doubted = false;
   if (message.boot_up) {
     ++node.boots;
-    node.restarts += std::exchange(node.communication_only, false) ? 0U : 1U;
+    auto reset = std::exchange(node.reset, std::nullopt);
+    if (now > node.reset_at + kLongestStart) reset.reset();
+    if (reset != NmtCommand::reset_communication) ++node.restarts;
+    if (!reset) ++node.power_ups;
     emergency_ids_.on_boot_up(message.node);
     node.state = NmtState::pre_operational;  // CiA 301, 7.3.2.2.1: a node enters it by itself after boot-up.
     node.last.reset();
@@ -165,7 +173,9 @@ void NodeWatch::forget(std::uint8_t node) {
   nodes_[node].boots = before.boots;
   nodes_[node].losses = before.losses;
   nodes_[node].restarts = before.restarts;
-  nodes_[node].communication_only = before.communication_only;
+  nodes_[node].power_ups = before.power_ups;
+  nodes_[node].reset = before.reset;
+  nodes_[node].reset_at = before.reset_at;
   nodes_[node].guarded = before.guarded;
   update_deadline();
 }

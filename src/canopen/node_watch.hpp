@@ -53,7 +53,7 @@ class NodeWatch {
   void on_frame(const can::Frame& frame, TimePoint now);
   /// A frame that this program sends, or another master. Whoever writes 1017h gives the node another period,
   /// and an answer to a question by node guarding is no heartbeat: the period is learned anew.
-  void on_sent(const can::Frame& frame);
+  void on_sent(const can::Frame& frame, TimePoint now);
   void on_time(TimePoint now);
   TimePoint deadline() const { return deadline_; }
 
@@ -69,6 +69,8 @@ class NodeWatch {
   /// Those of them that do not follow an NMT reset of the communication, behind which the application goes on
   /// as it was (CiA 301, 7.3.2.2.1).
   std::uint32_t restarts(std::uint8_t node) const { return nodes_[node].restarts; }
+  /// Those of them that no NMT command made: the power came back.
+  std::uint32_t power_ups(std::uint8_t node) const { return nodes_[node].power_ups; }
   /// Heartbeats heard from the node so far, boot-up not counted.
   std::uint32_t heartbeats(std::uint8_t node) const { return nodes_[node].heartbeats; }
   /// How often its heartbeat was lost.
@@ -98,7 +100,9 @@ class NodeWatch {
     bool doubted = false;  ///< It was heard before the heartbeat or the bus was lost.
     std::uint32_t boots = 0;
     std::uint32_t restarts = 0;
-    bool communication_only = false;  ///< Its next boot-up is that of a reset of its communication.
+    std::uint32_t power_ups = 0;
+    std::optional<NmtCommand> reset;  ///< It was told to, and has not booted up since.
+    TimePoint reset_at{};
     std::uint32_t heartbeats = 0;
     std::uint32_t losses = 0;
     std::optional<TimePoint> last;  ///< Last heartbeat since boot-up or loss.
@@ -111,7 +115,7 @@ class NodeWatch {
   void on_emergency(const Emergency& emergency, TimePoint now);
   void on_error_control(const ErrorControl& message, TimePoint now);
   void forget_period(std::uint8_t node);
-  void on_nmt(const NmtMessage& message);
+  void on_nmt(const NmtMessage& message, TimePoint now);
 
   void update_deadline();
 

@@ -43,8 +43,11 @@ Result<void> check_counts(const Cabinet& cabinet, const Axis& axis, const comman
 
 /// How to get rid of a setting that contradicts the file.
 std::string without(Source source, std::string_view option) {
-  return source == Source::environment ? fmt::format("unset {}", name_of(source, option))
-                                       : fmt::format("leave {} out", option);
+  switch (source) {
+    case Source::environment: return fmt::format("unset {}", name_of(source, option));
+    case Source::set: return "choose another one at the prompt";
+    default: return fmt::format("leave {} out", option);
+  }
 }
 
 /// A line, and where it names the axes that it is for.
@@ -54,6 +57,7 @@ struct Named {
   const Settings* settings;
   Source from;
   std::vector<std::string>* notices;
+  bool way_out = false;  ///< Nothing that is set keeps a drive from being stopped.
 };
 
 /// Of what is given beside an axis: `is` is what the file says of it, `given` the value of `option`.
@@ -61,7 +65,7 @@ Result<void> weigh(const Named& named, const Axis& axis, Source from, std::strin
                    const std::string& is, const std::string& wanted) {
   const auto file = named.cabinet->file.filename().string();
   const auto& given = option == "--bus" ? named.settings->bus : named.settings->drive;
-  if (from >= named.from)
+  if (from >= named.from && !named.way_out)
     return fail(Errc::usage, fmt::format("{} is {} by {}, not {}", axis.name, is, file, wanted),
                 fmt::format("{}, or change the file", without(from, option)));
   add_once(*named.notices,
@@ -118,7 +122,8 @@ bool means_axes(const command::Command& command, const Settings& settings) {
 /// Numbers on one bus: those that are axes are what the file says.
 Result<std::vector<LinePart>> parts_by_number(const Named& named, const command::Command& command,
                                               const cabinet::Bus& bus) {
-  const auto& [cabinet, arguments, settings, from, notices] = named;
+  const auto& cabinet = named.cabinet;
+  const auto& settings = named.settings;
   std::vector<const Axis*> axes;
   if (means_axes(command, *settings) && !settings->bus.empty()) {
     for (const auto& axis : cabinet->axes)
@@ -213,7 +218,7 @@ std::vector<std::string> with_axis_option(std::vector<std::string> words, const 
 Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Command& command,
                                        const command::Arguments& arguments, const Settings& settings,
                                        std::vector<std::string>& notices) {
-  Named named{&cabinet, &arguments, &settings, settings.nodes_from, &notices};
+  Named named{&cabinet, &arguments, &settings, settings.nodes_from, &notices, command.way_out};
   if (names_axes(settings.nodes)) {
     const auto axes = cabinet.select(settings.nodes);
     if (!axes) return fail(axes.error());

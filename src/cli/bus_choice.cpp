@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/text.hpp"
 #include "cli/axis_lines.hpp"
 #include "session/open_bus.hpp"
 
@@ -40,7 +41,8 @@ Result<Settings> settle_bus(const Cabinet& cabinet, Settings settings, std::vect
     return settings;
   const auto* known = bus_given(cabinet, settings.bus);
   if (settings.cabinet_from > bus_from) {
-    if (known != nullptr && known->name == settings.bus) return settings;
+    const bool numbers = !settings.nodes.empty() && !equals_nocase(settings.nodes, "all");
+    if (known != nullptr && known->name == settings.bus && numbers) return settings;
     if (known == nullptr || cabinet.buses.size() > 1)
       add_once(notices,
                fmt::format("{} ({}) is not used: the buses are those of {} ({})", name_of(bus_from, "--bus"),

@@ -2,9 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <vector>
 
 #include "session/owed_restarts.hpp"
 #include "session/session.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::cli {
 
@@ -24,13 +27,15 @@ class RestartWatch {
   Result<void> keep();
 
  private:
-  std::uint32_t restarts(std::uint8_t node);
+  session::Starts starts(std::uint8_t node);
   Result<void> keep_node(std::uint8_t node);
+  void take_from_others(std::uint8_t node, const show::OwedRestartFile& file);
   session::Identity identity_now(std::uint8_t node);
 
   session::Session* session_;
   std::filesystem::path folder_;
   session::OwedRestarts owed_;
+  std::map<std::uint8_t, std::vector<ObjectAddress>> in_file_;  ///< As this program left it, or found it.
 };
 
 }  // namespace servoctl::cli

@@ -31,6 +31,14 @@ void apply_form(Settings& settings, const command::Arguments& arguments) {
   if (arguments.has("--lang")) settings.chinese = arguments.text("--lang") == "zh";
 }
 
+Result<void> check_contradictions(const command::Arguments& arguments) {
+  if (arguments.has("--quiet") && arguments.has("--verbose"))
+    return fail(Errc::usage, "--quiet and --verbose contradict each other", "leave one of them out");
+  if (arguments.has("--json") && arguments.text("--output") == "text")
+    return fail(Errc::usage, "--json and --output text contradict each other", "leave one of them out");
+  return {};
+}
+
 }  // namespace
 
 void Settings::keep_for_lines() {
@@ -116,10 +124,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
                   fmt::format("--retries: '{}' is not a number from 0 to 100", arguments.text("--retries")));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
-  if (arguments.has("--quiet") && arguments.has("--verbose"))
-    return fail(Errc::usage, "--quiet and --verbose contradict each other", "leave one of them out");
-  if (arguments.has("--json") && arguments.text("--output") == "text")
-    return fail(Errc::usage, "--json and --output text contradict each other", "leave one of them out");
+  if (const auto right = check_contradictions(arguments); !right) return fail(right.error());
   apply_form(base, arguments);
   // What a restricted file says of itself is no consent.
   base.yes = base.yes || (arguments.has("--yes") && Restriction::current() == nullptr);

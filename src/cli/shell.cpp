@@ -82,6 +82,12 @@ Shell::Shell(Console& console, Options options)
 
 int Shell::run(const std::vector<std::string>& words) { return show(*console_, perform(words)); }
 
+Result<Settings> settings_of(const ParsedLine& line, const Settings& defaults) {
+  auto out = apply_options(defaults, line.arguments);
+  if (out && line.command->all_by_default && !out->nodes_typed()) out->nodes = "all";
+  return out;
+}
+
 Outcome Shell::perform(const std::vector<std::string>& words) {
   const auto match = match_command(words);
   const auto path = match.command != nullptr ? match.command->path : std::string_view();
@@ -96,9 +102,8 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
     const auto known = [this] { return cabinet_.get(options_.defaults); };
     return failed(about_axis(parsed.error(), words, match, known), std::move(settings), path);
   }
-  auto applied = apply_options(options_.defaults, parsed->arguments);
+  const auto applied = settings_of(*parsed, options_.defaults);
   if (!applied) return failed(applied.error(), std::move(settings), path);
-  if (parsed->command->all_by_default && !applied->nodes_typed()) applied->nodes = "all";
   console_->set_quiet(applied->quiet);
   const ShownWait shown(*this);
   console_->set_verbose(applied->verbose);

@@ -28,6 +28,9 @@
 
 namespace servoctl::cli {
 
+/// What holds for one line. Errors as apply_options().
+Result<Settings> settings_of(const ParsedLine& line, const Settings& defaults);
+
 /// Runs command lines, one after the other: opens what a command needs, runs it, renders its result. Keeps
 /// the bus and the drive data open from one line to the next. Every front end runs its lines here.
 class Shell {

@@ -11,6 +11,7 @@
 #include "cli/shell.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
+#include "session/node_life.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
 #include "show/identity.hpp"
@@ -76,14 +77,14 @@ tl::unexpected<Error> several_families(const Cast& cast) {
                   lines));
 }
 
+/// A node answers node guarding within some milliseconds.
+constexpr Duration kGuardPatience = std::chrono::milliseconds(200);
+
 /// A stopped node answers no SDO.
-Error serial_not_read(const command::Command& command, const cabinet::Axis& axis, const std::string& bus,
-                      Error error) {
+Error serial_not_read(const command::Command& command, const cabinet::Axis& axis, Error error) {
   if (error.code != Errc::timeout || !includes(command.needs, Needs::nmt)) return error;
   error.message = fmt::format("its serial number cannot be checked: {}", error.message);
-  error.hint = fmt::format(
-      "`nmt preop` first, if the node is stopped; -b {} -n {} names the node without the cabinet file", bus,
-      axis.node);
+  error.hint = fmt::format("`nmt preop -n {}` first, if the node is stopped", axis.node);
   return error;
 }
 
@@ -299,8 +300,13 @@ Result<void> Shell::hold_serials(Run& run) {
     const bool is_meant = all || std::find(nodes.begin(), nodes.end(), axis->node) != nodes.end();
     if (!is_meant || !axis->serial || run.settings.force_family) continue;
     const auto identity = session::read_identity(*run.context.session, axis->node);
-    if (all && !identity && identity.error().code == Errc::timeout) continue;
-    if (!identity) return fail(serial_not_read(*run.command, *axis, run.settings.bus, identity.error()));
+    if (all && !identity && identity.error().code == Errc::timeout) {
+      auto life = session::look_from_now(*run.context.session, std::span(&axis->node, 1));
+      if (const auto heard = session::hear_who_lives(*run.context.session, life, kGuardPatience); !heard)
+        return heard;
+      if (!life.front().alive) continue;
+    }
+    if (!identity) return fail(serial_not_read(*run.command, *axis, identity.error()));
     if (const auto same = cabinet::hold_serial(*axis, *identity); !same) return same;
   }
   return {};

@@ -28,8 +28,8 @@ bool file_rivals_bus(const Settings& settings) {
 /// `-n all` beside a cabinet file means its axes only where the line goes by the file.
 void tell_all_of_bus(const command::Command& command, const Settings& settings,
                      std::vector<std::string>& notices) {
-  if (!settings.nodes_typed() || !equals_nocase(settings.nodes, "all") || settings.bus.empty() ||
-      settings.bus_from == Source::line || !includes(command.needs, Needs::node))
+  if (!equals_nocase(settings.nodes, "all") || settings.bus.empty() || settings.bus_from == Source::line ||
+      !includes(command.needs, Needs::node))
     return;
   std::error_code error;
   const auto file = cabinet::find_cabinet(std::filesystem::current_path(error));
@@ -103,8 +103,12 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
   if (!known) return fail(known.error());
   if (*known == nullptr) return std::vector<LinePart>();
   const auto settings = rivals ? settle_bus(**known, given, notices) : given;
-  if (!settings) return fail(settings.error());
-  auto parts = parts_of(**known, command, line.arguments, *settings, notices);
+  if (!settings && !command.way_out) return fail(settings.error());
+  // A way out goes to both.
+  auto of_file = settings.value_or(given);
+  if (!settings) of_file.bus.clear();
+  auto parts = parts_of(**known, command, line.arguments, of_file, notices);
+  if (!settings && parts) parts->push_back({given, {}, {}});
   if (parts)
     if (const auto good = check_several(command, line.arguments, *parts); !good) return fail(good.error());
   return parts;

@@ -59,26 +59,30 @@ drive::Use Purpose::exposure() const {
   return stays ? drive::Use::enable : use;
 }
 
-Result<std::optional<double>> setting_of(session::Session& session, const MotionUnits& units,
-                                         const std::string& name, const OwedValues& owed) {
+Result<MayHold> setting_of(session::Session& session, const MotionUnits& units, const std::string& name,
+                           const OwedValues& owed) {
   const auto object = units.object(name);
-  if (!object) return std::optional<double>();
-  auto answer = session.upload(units.node(), *object);
-  const auto waiting = std::ranges::find(owed, *object, &session::OwedValue::object);
-  if (answer && waiting != owed.end()) answer = waiting->in_force.value_or(Bytes());
+  if (!object) return MayHold{std::nullopt};
+  const auto answer = session.upload(units.node(), *object);
   if (!answer && answer.error().code != Errc::sdo_abort) return fail(answer.error());
-  if (!answer || answer->empty()) return std::optional<double>();
-  const auto meaning = drive::fitted(units.meaning(*object), answer->size());
-  const auto value = od::decode(meaning.type, *answer);
-  if (value && meaning.type_known) return std::optional(od::decode_number(meaning.encoding, *value));
-  return std::optional(static_cast<double>(load_le(*answer)));
+  const auto number = [&](const std::optional<Bytes>& bytes) -> std::optional<double> {
+    if (!bytes || bytes->empty()) return std::nullopt;
+    const auto meaning = drive::fitted(units.meaning(*object), bytes->size());
+    const auto value = od::decode(meaning.type, *bytes);
+    if (value && meaning.type_known) return od::decode_number(meaning.encoding, *value);
+    return static_cast<double>(load_le(*bytes));
+  };
+  MayHold out{number(answer ? std::optional(*answer) : std::nullopt)};
+  const auto waiting = std::ranges::find(owed, *object, &session::OwedValue::object);
+  if (waiting != owed.end()) out.push_back(number(waiting->in_force));
+  return out;
 }
 
 Result<std::vector<HeldCaution>> held_cautions(session::Session& session, const MotionUnits& units,
                                                const PanelValues& panel, const OwedValues& owed,
                                                const std::function<bool(const drive::Caution&)>& concerns) {
   std::vector<HeldCaution> out;
-  std::map<std::string, std::optional<double>> known;
+  std::map<std::string, MayHold> known;
   for (const auto& rule : units.profile().rules.cautions) {
     if (!concerns(rule)) continue;
     if (!rule.is_conditional()) {
@@ -86,13 +90,17 @@ Result<std::vector<HeldCaution>> held_cautions(session::Session& session, const 
       continue;
     }
     if (known.count(rule.name) == 0) {
-      const auto read = setting_of(session, units, rule.name, owed);
+      auto read = setting_of(session, units, rule.name, owed);
       if (!read) return fail(read.error());
       const auto told = panel.find(rule.name);
-      known[rule.name] = !*read && told != panel.end() ? static_cast<double>(told->second) : *read;
+      if (!read->front() && told != panel.end()) read->front() = static_cast<double>(told->second);
+      known[rule.name] = std::move(*read);
     }
-    const auto& now = known[rule.name];
-    if (!now || rule.holds(*now)) out.push_back({&rule, !now});
+    const auto& values = known[rule.name];
+    const bool true_of_one =
+        std::ranges::any_of(values, [&](const auto& value) { return value && rule.holds(*value); });
+    const bool unknown = std::ranges::any_of(values, [](const auto& value) { return !value; });
+    if (true_of_one || unknown) out.push_back({&rule, !true_of_one});
   }
   return out;
 }

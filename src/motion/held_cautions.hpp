@@ -35,10 +35,12 @@ struct HeldCaution {
 /// What a drive has stored, and goes by only after a restart.
 using OwedValues = std::vector<session::OwedValue>;
 
-/// The number of a parameter or object that the drive goes by, for rules of the family: not what is `owed`.
-/// Empty where it has no object, the drive refuses to give it, or nobody knows what is in force.
-Result<std::optional<double>> setting_of(session::Session& session, const MotionUnits& units,
-                                         const std::string& name, const OwedValues& owed);
+/// The numbers of a parameter or object that the drive may go by, for rules of the family: what it holds, and
+/// where that is `owed` the one from before as well, because a restart may have gone by unseen. Empty where
+/// it has no object, the drive refuses to give it, or nobody knows what was in force.
+using MayHold = std::vector<std::optional<double>>;
+Result<MayHold> setting_of(session::Session& session, const MotionUnits& units, const std::string& name,
+                           const OwedValues& owed);
 
 /// The cautions of the family, of those that `concerns` selects, that are true or whose parameter cannot be
 /// read. Only reads.

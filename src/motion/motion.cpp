@@ -79,7 +79,7 @@ Result<void> Motion::find_watchdog() {
   return {};
 }
 
-OwedValues Motion::owed() const { return show::owed_values(*session_, options_.state_folder, node_); }
+show::OwedRestart Motion::owed() const { return show::owed_restart(*session_, options_.state_folder, node_); }
 
 Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
   auto items = look_at_drive(chinese);

@@ -12,6 +12,7 @@
 #include "motion/motion_guard.hpp"
 #include "motion/motion_monitor.hpp"
 #include "motion/preflight.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::motion {
 
@@ -79,7 +80,7 @@ class Motion {
   /// drive makes it impossible: a homing method whose switch the drive ignores.
   Result<void> intend(const Purpose& purpose);
   /// What the drive has stored, and goes by after its next restart.
-  OwedValues owed() const;
+  show::OwedRestart owed() const;
   /// Which watchdog there is: only reads, and listens for up to kListening. look() and begin() do it as well.
   Result<void> find_watchdog();
   Result<std::vector<PreflightItem>> look(bool chinese);

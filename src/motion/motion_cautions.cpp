@@ -13,8 +13,7 @@ namespace servoctl::motion {
 /// Where the drive goes by other numbers of its units than those that it holds, a motion would be another one
 /// than was asked for.
 Result<void> Motion::check_units_in_force() const {
-  if (options_.turn) return {};
-  const auto waiting = owed();
+  const auto waiting = owed().values;
   for (const auto& value : waiting)
     for (const auto& [measure, ways] : profile_->rules.units)
       for (const auto& way : ways) {
@@ -22,16 +21,16 @@ Result<void> Motion::check_units_in_force() const {
         if (std::ranges::find(objects, value.object) == objects.end()) continue;
         return fail(drive_error(
             Errc::refused, node_, value.object,
-            fmt::format("what a turn of the motor is, is not known: stored, in force after a restart: {}",
+            fmt::format("what a turn of the motor is, is not known: {}: {}", show::owed_lead(waiting),
                         show::owed_text(profile_, node_, waiting, false)),
-            "restart the drive first; or say how many counts a turn has now: --turn"));
+            fmt::format("restart the drive first; `status --restarted -n {}` says that it was", node_)));
       }
   return {};
 }
 
 Result<void> Motion::intend(const Purpose& purpose) {
   purpose_ = purpose;
-  const auto held = held_cautions(*session_, *units_, options_.panel, owed(),
+  const auto held = held_cautions(*session_, *units_, options_.panel, owed().values,
                                   [](const drive::Caution& rule) { return rule.is_rule(); });
   if (!held) return fail(held.error());
   return check_cautions(*held, *units_, purpose);
@@ -44,7 +43,7 @@ Result<std::vector<PreflightItem>> Motion::look_at_drive(bool chinese) {
 /// The least of what cautions say that hold, or may hold.
 Result<std::optional<double>> Motion::cap_of_cautions(ObjectAddress as,
                                                       std::string drive::Caution::*text) const {
-  const auto held = held_cautions(*session_, *units_, options_.panel, owed(),
+  const auto held = held_cautions(*session_, *units_, options_.panel, owed().values,
                                   [text](const drive::Caution& rule) { return !(rule.*text).empty(); });
   if (!held) return fail(held.error());
   std::optional<double> out;

@@ -183,20 +183,26 @@ class Preflight {
   }
 
   void tell_owed() {
-    if (request_.owed.empty()) return;
+    if (request_.owed.unread)
+      add(Weight::caution, "restart",
+          fmt::format("what waits for a restart is not known: {}", request_.owed.unread->message));
+    if (request_.owed.values.empty()) return;
     add(Weight::caution, "restart",
-        fmt::format("stored, in force after a restart: {}",
-                    show::owed_text(&units_->profile(), node_, request_.owed, chinese_)));
+        fmt::format("{}: {}", show::owed_lead(request_.owed.values),
+                    show::owed_text(&units_->profile(), node_, request_.owed.values, chinese_)));
   }
 
   /// What has to be set before the drive listens to CANopen.
   Result<void> look_at_needs() {
     for (const auto& need : units_->profile().rules.nmt.needs) {
-      const auto now = setting_of(*session_, *units_, need.name, request_.owed);
+      const auto now = setting_of(*session_, *units_, need.name, request_.owed.values);
       if (!now) return fail(now.error());
-      if (*now && **now != static_cast<double>(need.value))
+      const auto other = std::ranges::find_if(
+          *now, [&](const auto& value) { return value && *value != static_cast<double>(need.value); });
+      if (other != now->end())
         add(Weight::caution, need.name,
-            fmt::format("it is {}, and {} is needed for CANopen: the drive may not obey", **now, need.value));
+            fmt::format("it is {}, and {} is needed for CANopen: the drive may not obey", **other,
+                        need.value));
     }
     return {};
   }
@@ -208,7 +214,7 @@ class Preflight {
     const auto concerns = [this](const drive::Caution& rule) {
       return !request_.purpose || rule.concerns_use(request_.purpose->exposure());
     };
-    const auto held = held_cautions(*session_, *units_, request_.panel, request_.owed, concerns);
+    const auto held = held_cautions(*session_, *units_, request_.panel, request_.owed.values, concerns);
     if (!held) return fail(held.error());
     for (const auto& [rule, unread] : *held) {
       const auto lead =

@@ -8,6 +8,7 @@
 #include "motion/held_cautions.hpp"
 #include "motion/motion_units.hpp"
 #include "motion/watchdog.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::motion {
 
@@ -31,7 +32,7 @@ struct PreflightRequest {
   std::optional<Purpose> purpose = {};  ///< Cautions of other motions are left out; empty: none is.
   PanelValues panel = {};
   bool ignores_remote = false;  ///< Goes on although bit 9 of the statusword is 0.
-  OwedValues owed = {};         ///< What waits for a restart, so that the drive does not go by it.
+  show::OwedRestart owed = {};  ///< What waits for a restart, so that the drive does not go by it.
 };
 
 /// What there is to know before the drive is energised: state, warnings, inputs, limits, the family's

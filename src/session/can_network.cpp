@@ -213,7 +213,7 @@ std::optional<NodeEvent> CanNetwork::take_event() {
 
 Result<void> CanNetwork::send(const can::Frame& frame) {
   duplicates_.on_sent(frame, now());
-  watch_.on_sent(frame);
+  watch_.on_sent(frame, now());
   epochs_.on_frame(frame);
   const auto sent = bus_->send(frame);
   if (ordered_ && sent)

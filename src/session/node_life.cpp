@@ -14,6 +14,11 @@ namespace {
 /// A heartbeat period that is longer is not waited for.
 constexpr Duration kMostPeriod = std::chrono::seconds(2);
 
+/// Between two heartbeats of a node; of one whose period nobody knows, as long as may be.
+Duration longest_silence(Duration period) {
+  return period == Duration::zero() ? kMostPeriod : std::min(kMostPeriod, period * 3 / 2);
+}
+
 }  // namespace
 
 std::vector<NodeLife> look_from_now(const Session& session, std::span<const std::uint8_t> nodes) {
@@ -60,7 +65,7 @@ Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duratio
   for (const auto& one : nodes) {
     if (one.alive) continue;
     if (auto* can = session.can())
-      patience = std::max(patience, std::min(kMostPeriod, can->watch().period(one.node) * 3 / 2));
+      patience = std::max(patience, longest_silence(can->watch().period(one.node)));
     if (!guards) continue;
     if (const auto asked = session.network().ask_state(one.node); !asked) return asked;
   }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "drive/naming.hpp"
+#include "drive/standard_objects.hpp"
 
 namespace servoctl::session {
 
@@ -17,9 +18,11 @@ bool OwedRestarts::waits(const Node& node, ObjectAddress object) {
 }
 
 /// Behind a restart the drive goes by what it has stored.
-void OwedRestarts::settle(Node& node, std::uint32_t restarts) {
-  if (restarts == node.restarts) return;
-  node.restarts = restarts;
+void OwedRestarts::settle(Node& node, Starts starts) {
+  const auto before = std::exchange(node.starts, starts);
+  const bool restarted =
+      node.by_power ? starts.power_ups != before.power_ups : starts.restarts != before.restarts;
+  if (!restarted) return;
   node.changed = node.changed || !node.values.empty();
   node.values.clear();
   node.seen.clear();
@@ -32,6 +35,7 @@ void OwedRestarts::take(Node& node, ObjectAddress object, const Bytes& now, bool
     if (owed->stored == now) return;
     node.changed = true;
     owed->stored = now;
+    owed->kept = node.to_flash;
     owed->earlier = false;
     if (owed->in_force != now) return;
     node.seen[object] = now;
@@ -46,7 +50,7 @@ void OwedRestarts::take(Node& node, ObjectAddress object, const Bytes& now, bool
   }
   if (is_known && seen->second == now) return;
   node.changed = true;
-  node.values.push_back({object, is_known ? std::optional(seen->second) : std::nullopt, now});
+  node.values.push_back({object, is_known ? std::optional(seen->second) : std::nullopt, now, node.to_flash});
 }
 
 void OwedRestarts::learn(std::uint8_t node, const drive::Profile& profile) {
@@ -55,21 +59,51 @@ void OwedRestarts::learn(std::uint8_t node, const drive::Profile& profile) {
   known.profile = &profile;
   known.node_id = drive::place_of(profile, profile.rules.nmt.node_id);
   known.bitrate = drive::place_of(profile, profile.rules.nmt.bitrate);
+  known.flash_switch = drive::place_of(profile, profile.rules.store.flash_switch);
+  known.by_power = profile.rules.nmt.address_after == drive::NmtRules::Restart::power_cycle;
 }
 
-void OwedRestarts::on_exchange(const Exchange& exchange, std::uint32_t restarts) {
+/// The drive is told to store what it has, or where its values go from now on.
+void OwedRestarts::note_storing(Node& node, const Exchange& exchange) {
+  const auto& store = node.profile->rules.store;
+  const auto number = load_le(exchange.written != nullptr ? *exchange.written : *exchange.result);
+  if (exchange.object == node.flash_switch && store.to_flash)
+    node.to_flash = number == static_cast<std::uint64_t>(*store.to_flash);
+  if (exchange.written == nullptr) return;
+  const bool stores = exchange.object.index == objects::kStoreIndex ||
+                      std::ranges::any_of(store.store, [&](const drive::Setting& setting) {
+                        return drive::place_of(*node.profile, setting.name) == exchange.object &&
+                               number == static_cast<std::uint64_t>(setting.value);
+                      });
+  for (auto& value : node.values) {
+    node.changed = node.changed || (stores && !value.kept);
+    value.kept = value.kept || stores;
+  }
+}
+
+void OwedRestarts::on_exchange(const Exchange& exchange, Starts starts) {
   auto& node = nodes_[exchange.node & 0x7FU];
-  if (!exchange.result || !waits(node, exchange.object)) return;
-  settle(node, restarts);
+  if (!exchange.result || node.profile == nullptr) return;
+  note_storing(node, exchange);
+  if (!waits(node, exchange.object)) return;
+  settle(node, starts);
   const bool written = exchange.written != nullptr;
   take(node, exchange.object, written ? *exchange.written : *exchange.result, written);
 }
 
-void OwedRestarts::take_up(std::uint8_t node, std::vector<OwedValue> values, Identity of) {
+void OwedRestarts::take_up(std::uint8_t node, std::vector<OwedValue> values, Identity of, bool by_power) {
   auto& known = nodes_[node & 0x7FU];
   for (auto& value : values) value.earlier = true;
   known.values = std::move(values);
   known.kept_of = std::move(of);
+  known.by_power = by_power;
+}
+
+void OwedRestarts::add_from_others(std::uint8_t node, std::vector<OwedValue> values) {
+  auto& known = nodes_[node & 0x7FU];
+  for (auto& value : values)
+    if (std::ranges::find(known.values, value.object, &OwedValue::object) == known.values.end())
+      known.values.push_back(std::move(value));
 }
 
 void OwedRestarts::forget(std::uint8_t node) {
@@ -89,9 +123,9 @@ void OwedRestarts::settle_identity(std::uint8_t node, bool same) {
   known.changed = true;
 }
 
-const std::vector<OwedValue>& OwedRestarts::values(std::uint8_t node, std::uint32_t restarts) {
+const std::vector<OwedValue>& OwedRestarts::values(std::uint8_t node, Starts starts) {
   auto& known = nodes_[node & 0x7FU];
-  settle(known, restarts);
+  settle(known, starts);
   return known.values;
 }
 

@@ -20,7 +20,14 @@ struct OwedValue {
   ObjectAddress object;
   std::optional<Bytes> in_force = {};  ///< What the drive goes by now; empty where nobody knows.
   Bytes stored;
+  bool kept = false;     ///< It is known to outlive the restart.
   bool earlier = false;  ///< Kept of an earlier session, and not written since.
+};
+
+/// How often a node was heard to start.
+struct Starts {
+  std::uint32_t restarts = 0;
+  std::uint32_t power_ups = 0;  ///< Those of them that no NMT command made.
 };
 
 /// Which values of the nodes of one bus wait for a restart: whatever wrote them, they show in the transfers.
@@ -30,18 +37,21 @@ class OwedRestarts {
   /// What the node is: its data say which values wait. Node-ID and bitrate are left out: how they come into
   /// force is the matter of who changes them.
   void learn(std::uint8_t node, const drive::Profile& profile);
-  /// `restarts`: how often the node was heard to restart.
-  void on_exchange(const Exchange& exchange, std::uint32_t restarts);
+  void on_exchange(const Exchange& exchange, Starts starts);
 
-  /// What waits since an earlier session, and the drive that it is kept of.
-  void take_up(std::uint8_t node, std::vector<OwedValue> values, Identity of);
+  /// What waits since an earlier session, the drive that it is kept of, and whether only power ends it.
+  void take_up(std::uint8_t node, std::vector<OwedValue> values, Identity of, bool by_power);
+  /// What another program has kept meanwhile.
+  void add_from_others(std::uint8_t node, std::vector<OwedValue> values);
   /// It was restarted without being heard: nothing waits.
   void forget(std::uint8_t node);
   /// Whether the drive that is there is the one that earlier values are kept of; those of another are
   /// dropped.
   void settle_identity(std::uint8_t node, bool same);
 
-  const std::vector<OwedValue>& values(std::uint8_t node, std::uint32_t restarts);
+  const std::vector<OwedValue>& values(std::uint8_t node, Starts starts);
+  /// Whether an NMT reset is no restart of this drive (drive::NmtRules::Restart::power_cycle).
+  bool ends_by_power(std::uint8_t node) const { return nodes_[node].by_power; }
   /// The drive that the values are kept of, until it was seen to be the one that is there.
   const std::optional<Identity>& kept_of(std::uint8_t node) const { return nodes_[node].kept_of; }
   /// Whether the values have changed since the last call.
@@ -50,15 +60,18 @@ class OwedRestarts {
  private:
   struct Node {
     const drive::Profile* profile = nullptr;
-    std::optional<ObjectAddress> node_id, bitrate;
+    std::optional<ObjectAddress> node_id, bitrate, flash_switch;
+    bool to_flash = false;  ///< Writes go to the memory that outlives power-off.
     std::vector<OwedValue> values;
     std::map<ObjectAddress, Bytes> seen;  ///< Values in force, as far as they were read.
     std::optional<Identity> kept_of;
-    std::uint32_t restarts = 0;
+    bool by_power = false;
+    Starts starts;
     bool changed = false;
   };
   static bool waits(const Node& node, ObjectAddress object);
-  static void settle(Node& node, std::uint32_t restarts);
+  static void settle(Node& node, Starts starts);
+  static void note_storing(Node& node, const Exchange& exchange);
   static void take(Node& node, ObjectAddress object, const Bytes& now, bool written);
 
   std::array<Node, 128> nodes_{};

@@ -14,6 +14,7 @@
 #include "settings/address_write.hpp"
 #include "settings/own_cob_ids.hpp"
 #include "show/identity.hpp"
+#include "show/owed_restart.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -172,6 +173,8 @@ class AddressRun {
   }
 
   void arrived() {
+    // It has restarted.
+    show::OwedRestartFile(desk_->state_folder, session_->url(), change_->node).remove();
     out_.end = change_->bitrate ? AddressEnd::at_bitrate : AddressEnd::moved;
     if (!change_->moves()) return;
     if (!tells_itself_apart(change_->identity))

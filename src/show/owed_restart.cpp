@@ -49,6 +49,7 @@ Result<OwedValue> value_of(const Value& record, const std::string& file) {
                 static_cast<std::uint8_t>(fields.number("sub", true).value_or(0) & 0xFFU)};
   const auto stored = parse_hex_bytes(fields.text("stored", true));
   const auto in_force = fields.text("in_force");
+  out.kept = fields.flag("kept");
   if (!in_force.empty()) out.in_force = parse_hex_bytes(in_force);
   if (!stored || (!in_force.empty() && !out.in_force)) fields.refuse("stored");
   if (fields.error()) return damaged(*fields.error());
@@ -85,10 +86,11 @@ Result<std::optional<OwedRestart>> OwedRestartFile::read() const {
   auto identity = inside == nullptr ? std::nullopt : identity_of(*inside, node_);
   const auto* values = report::find(*document, "values");
   const auto* list = values == nullptr ? nullptr : std::get_if<report::List>(&values->data());
+  const bool by_power = fields.flag("by_power");
   if (!identity) fields.refuse("identity");
   if (list == nullptr) fields.refuse("values");
   if (fields.error()) return damaged(*fields.error());
-  OwedRestart out{.identity = std::move(*identity), .values = {}};
+  OwedRestart out{.identity = std::move(*identity), .values = {}, .by_power = by_power};
   for (const auto& one : *list) {
     auto value = value_of(one, file);
     if (!value) return fail(value.error());
@@ -104,10 +106,12 @@ Result<void> OwedRestartFile::write(const OwedRestart& owed) const {
     list.emplace_back(Record{{"index", std::uint64_t{value.object.index}},
                              {"sub", std::uint64_t{value.object.sub}},
                              {"in_force", hex_or_null(value.in_force)},
-                             {"stored", to_hex(value.stored)}});
+                             {"stored", to_hex(value.stored)},
+                             {"kept", value.kept}});
   const Record document{{"servoctl_restart", kVersion},
                         {"node", std::uint64_t{node_}},
                         {"time", utc_now_text()},
+                        {"by_power", owed.by_power},
                         {"identity", identity_record(lasting(owed.identity))},
                         {"values", std::move(list)}};
   return write_file_atomically(path_, report::to_json(document) + "\n");
@@ -118,12 +122,29 @@ void OwedRestartFile::remove() const {
   fs::remove(path_, error);
 }
 
-std::vector<OwedValue> owed_values(session::Session& session, const fs::path& state_folder,
-                                   std::uint8_t node) {
-  const auto kept = OwedRestartFile(state_folder, session.url(), node).read();
-  if (!kept || !*kept) return {};
+OwedRestart owed_restart(session::Session& session, const fs::path& state_folder, std::uint8_t node) {
+  auto kept = OwedRestartFile(state_folder, session.url(), node).read();
+  if (!kept) {
+    OwedRestart out;
+    out.unread = kept.error();
+    return out;
+  }
+  if (!*kept) return {};
   const auto now = session::read_identity(session, node);
-  return now && !change_of((*kept)->identity, *now).empty() ? std::vector<OwedValue>() : (*kept)->values;
+  if (!now) return {};
+  const bool told = (*kept)->identity.device_type || (*kept)->identity.vendor_id;
+  if (told && !change_of((*kept)->identity, *now).empty()) return {};
+  // What it does not hold any more, a restart has taken, or somebody else.
+  std::erase_if((*kept)->values, [&](const OwedValue& value) {
+    const auto holds = session.upload(node, value.object);
+    return holds && *holds != value.stored;
+  });
+  return std::move(**kept);
+}
+
+std::string_view owed_lead(const std::vector<OwedValue>& values) {
+  return std::ranges::all_of(values, &OwedValue::kept) ? "stored, in force after a restart"
+                                                       : "written, in force after a restart";
 }
 
 std::string owed_text(const drive::Profile* profile, std::uint8_t node, const std::vector<OwedValue>& values,
@@ -162,17 +183,32 @@ report::List owed_records(const drive::Profile* profile, const std::vector<OwedV
 }
 
 std::string owed_notice(const Desk& desk, std::uint8_t node) {
-  const auto values = owed_values(desk, node);
-  if (values.empty()) return {};
-  const auto what = owed_text(desk.profile, node, values, desk.speaks_chinese());
-  return desk.session->can() != nullptr
-             ? fmt::format(
-                   "node {}: stored, in force after a restart: {}; `nmt reset -n {} --wait` restarts it",
-                   node, what, node)
-             : fmt::format(
-                   "node {}: stored, in force after a restart: {}; switch it off and on, then "
-                   "`status --restarted -n {}`",
-                   node, what, node);
+  const auto owed = owed_restart(*desk.session, desk.state_folder, node);
+  if (owed.unread)
+    return fmt::format("node {}: what waits for a restart is not known: {}; {}", node, owed.unread->message,
+                       owed.unread->hint);
+  if (owed.values.empty()) return {};
+  const auto what = owed_text(desk.profile, node, owed.values, desk.speaks_chinese());
+  const bool kept = std::ranges::all_of(owed.values, &OwedValue::kept);
+  if (desk.session->can() != nullptr && !owed.by_power)
+    return kept
+               ? fmt::format(
+                     "node {0}: stored, in force after a restart: {1}; `nmt reset -n {0} --wait` restarts it, "
+                     "`status --restarted -n {0}` says that it was",
+                     node, what)
+               : fmt::format(
+                     "node {0}: written, in force after a restart, which loses it unless it is stored first "
+                     "(`store`): {1}; `nmt reset -n {0} --wait` restarts it, `status --restarted -n {0}` says "
+                     "that it was",
+                     node, what);
+  return kept ? fmt::format(
+                    "node {0}: stored, in force after a restart: {1}; switch it off and on, then "
+                    "`status --restarted -n {0}`",
+                    node, what)
+              : fmt::format(
+                    "node {0}: written, in force after a restart, which loses it unless it is stored first "
+                    "(`store`): {1}; switch it off and on, then `status --restarted -n {0}`",
+                    node, what);
 }
 
 }  // namespace servoctl::show

@@ -19,6 +19,8 @@ namespace servoctl::show {
 struct OwedRestart {
   session::Identity identity;
   std::vector<session::OwedValue> values;
+  bool by_power = false;             ///< An NMT reset is no restart of this drive.
+  std::optional<Error> unread = {};  ///< What is kept of it cannot be read.
 };
 
 /// The file in the folder for state that holds it: one for each bus, however that was written, and node.
@@ -38,14 +40,16 @@ class OwedRestartFile {
   std::filesystem::path path_;
 };
 
-/// The values of a node of the desk's session that are stored and come into force with its next restart,
-/// where it is the drive that they are kept of: it is asked who it is only where something is kept.
-std::vector<session::OwedValue> owed_values(session::Session& session,
-                                            const std::filesystem::path& state_folder, std::uint8_t node);
+/// What is stored in a node and comes into force with its next restart, where it is the drive that this is
+/// kept of: it is asked who it is only where something is kept.
+OwedRestart owed_restart(session::Session& session, const std::filesystem::path& state_folder,
+                         std::uint8_t node);
 inline std::vector<session::OwedValue> owed_values(const Desk& desk, std::uint8_t node) {
-  return owed_values(*desk.session, desk.state_folder, node);
+  return owed_restart(*desk.session, desk.state_folder, node).values;
 }
 
+/// `stored, in force after a restart`, or `written, …` where one of them is not known to be stored.
+std::string_view owed_lead(const std::vector<session::OwedValue>& values);
 /// `Pn0601 = 0 (1 in force)`, one after the other; in Chinese the labels are.
 std::string owed_text(const drive::Profile* profile, std::uint8_t node,
                       const std::vector<session::OwedValue>& values, bool chinese);

@@ -199,13 +199,13 @@ TEST_F(NodeWatchTest, DoesNotMissAGuardedNode) {
 /// A node that was asked now and then promises nothing.
 TEST_F(NodeWatchTest, DoesNotTakeAnswersToItsOwnQuestionsForHeartbeats) {
   for (int i = 0; i < 5; ++i) {
-    watch.on_sent(frame("705#R1"));
+    watch.on_sent(frame("705#R1"), TimePoint());
     hear("705#04", 100ms);
   }
   EXPECT_EQ(watch.deadline(), kNever);
   EXPECT_EQ(watch.state(5), NmtState::stopped);
   for (int i = 0; i < 4; ++i) hear("706#05", 100ms);
-  watch.on_sent(frame("705#R1"));
+  watch.on_sent(frame("705#R1"), TimePoint());
   EXPECT_EQ(watch.deadline(), now + 300ms) << "that of node 6";
 }
 
@@ -243,7 +243,7 @@ TEST_F(NodeWatchTest, MissesEveryNodeInItsOwnTime) {
 TEST_F(NodeWatchTest, LearnsThePeriodAnewWhenSomebodyWrites1017h) {
   for (int i = 0; i < 4; ++i) hear("705#05", 20ms);
   for (int i = 0; i < 4; ++i) hear("706#05", 20ms);
-  watch.on_sent(frame("605#2B171000F4010000"));
+  watch.on_sent(frame("605#2B171000F4010000"), TimePoint());
   EXPECT_EQ(watch.period(5), 0ms);
   EXPECT_EQ(watch.deadline(), now + 120ms) << "that of node 6";
   hear("606#2B171000F4010000", 0ms);

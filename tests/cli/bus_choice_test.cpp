@@ -52,6 +52,27 @@ TEST_F(BusChoice, ABusAndAFileOfOneLineMustNotContradictEachOther) {
   EXPECT_TRUE(says("\"axis\":\"table\"") && !says("feeder")) << all();
 }
 
+/// Whatever was set before, and wherever it contradicts the file.
+TEST_F(BusChoice, NothingThatIsSetKeepsADriveFromBeingStopped) {
+  ASSERT_EQ(run("enable -n feeder1 --turn 131072 --yes"), 0) << all();
+  shell->defaults().drive = "ts";
+  shell->defaults().drive_from = Source::set;
+  EXPECT_EQ(run("stop"), 0) << all();
+  shell->defaults().drive.clear();
+  EXPECT_EQ(run("status -n feeder1 --json"), 0) << all();
+  EXPECT_TRUE(says(R"("energised":false)")) << all();
+  named_by(Source::environment, Source::environment);
+  EXPECT_NE(run("stop --json"), 2) << all();
+  EXPECT_TRUE(says(R"("axis":"feeder1")") && says(R"("bus":"sim:dm@1,dm@2")")) << all();
+}
+
+TEST_F(BusChoice, ABusOfTheEnvironmentThatTheFileNamesLeavesNoAxisOut) {
+  named_by(Source::folder, Source::environment);
+  shell->defaults().bus = "main";
+  EXPECT_EQ(run("status -n all --json --cabinet " + file()), 0) << all();
+  EXPECT_TRUE(says("\"axis\":\"feeder1\"") && says("\"axis\":\"table\"")) << all();
+}
+
 TEST_F(BusChoice, TheSameOfTheEnvironment) {
   named_by(Source::environment, Source::environment);
   EXPECT_EQ(run("status -n all"), 2) << all();

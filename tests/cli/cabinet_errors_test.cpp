@@ -67,6 +67,8 @@ std::string played(const ErrorCase& c, const fs::path& folder, bool chinese = fa
   options.defaults.cabinet = c.files.count("cabinet.toml") != 0 ? "cabinet.toml" : "";
   if (c.files.empty()) options.defaults.bus = "sim:gsd600@1,da200@2";
   options.defaults.chinese = chinese;
+  options.state_folder = folder / "state";
+  fs::create_directories(options.state_folder);
   Shell shell(console, std::move(options));
   LineRunner runner(shell);
   std::string out = fmt::format("== {}\n", c.name);

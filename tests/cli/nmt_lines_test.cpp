@@ -56,6 +56,13 @@ TEST_F(NmtLines, AnAxisWithAnotherSerialNumberIsRefusedByAllThatBegins) {
   EXPECT_EQ(run("lss set-node 9 -n lift --yes"), 0) << all();
 }
 
+TEST_F(NmtLines, AStoppedDriveWithAnotherSerialNumberIsNotStartedWithAll) {
+  with_serial("0x00012345");
+  ASSERT_EQ(run("nmt stop -b main -n all"), 0) << all();
+  EXPECT_EQ(run("nmt start -b main -n all"), 4) << all();
+  EXPECT_TRUE(says("its serial number cannot be checked")) << all();
+}
+
 TEST_F(NmtLines, CtrlCEndsTheAssignmentOfNodeIds) {
   Shell::Options options;
   options.drive_folders = {fs::path(source_dir()) / "eds"};

@@ -1,7 +1,10 @@
 // Values that a drive has stored and goes by after its next restart: kept until that is seen, and shown.
 #include "show/owed_restart.hpp"
 
+#include <fstream>
+
 #include "axis_lines.hpp"
+#include "show/bus_name.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -22,7 +25,7 @@ class OwedRestart : public AxisLines {
   }
   bool owes(std::string_view place) {
     (void)run(fmt::format("status {} --json", place));
-    return says(R"("restart_owed":[{)") && says("stored, in force after a restart");
+    return says(R"("restart_owed":[{)") && says("in force after a restart");
   }
 };
 
@@ -30,6 +33,10 @@ constexpr const char* kDrive = "-n 1 -d gsd600 -b sim:gsd600@1";
 
 TEST_F(OwedRestart, AWriteThatWaitsIsShownUntilTheRestartIsSeen) {
   ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  EXPECT_EQ(run(fmt::format("status {}", kDrive)), 0) << all();
+  EXPECT_TRUE(says("written, in force after a restart, which loses it unless it is stored first")) << all();
+  EXPECT_TRUE(says("Pn0601 = 0 No (1 Yes in force)")) << all();
+  EXPECT_EQ(run(fmt::format("store --yes {}", kDrive)), 0) << all();
   EXPECT_EQ(run(fmt::format("status {}", kDrive)), 0) << all();
   EXPECT_TRUE(says("node 1: stored, in force after a restart: Pn0601 = 0 No (1 Yes in force)")) << all();
   EXPECT_EQ(run(fmt::format("nmt reset-comm --wait --yes {}", kDrive)), 0) << all();
@@ -53,7 +60,7 @@ TEST_F(OwedRestart, TheCautionOfWhatTheDriveGoesByStays) {
   ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
   (void)run(fmt::format("jog 10rpm --for 100ms --turn 131072 --dry-run {}", kDrive));
   (void)run(fmt::format("enable --yes {}", kDrive));
-  EXPECT_TRUE(says("stored, in force after a restart: Pn0601 = 0 No (1 Yes in force)")) << all();
+  EXPECT_TRUE(says("written, in force after a restart: Pn0601 = 0 No (1 Yes in force)")) << all();
   EXPECT_TRUE(says("a wired emergency stop has no effect")) << all();
   EXPECT_EQ(run(fmt::format("disable {}", kDrive)), 0) << all();
   EXPECT_EQ(run(fmt::format("nmt reset --wait --yes {}", kDrive)), 0) << all();
@@ -64,11 +71,78 @@ TEST_F(OwedRestart, TheCautionOfWhatTheDriveGoesByStays) {
 TEST_F(OwedRestart, NothingMovesByUnitsThatAreNotInForce) {
   ASSERT_EQ(run(fmt::format("param set Pn0456=0 Pn0457=23 {}", kDrive)), 0) << all();
   EXPECT_EQ(run(fmt::format("jog 10rpm --for 100ms --yes {}", kDrive)), 8) << all();
-  EXPECT_TRUE(says("what a turn of the motor is, is not known: stored, in force after a restart: Pn0456 = 0"))
+  EXPECT_TRUE(
+      says("what a turn of the motor is, is not known: written, in force after a restart: Pn0456 = 0"))
       << all();
   EXPECT_EQ(run(fmt::format("nmt reset --wait --yes {}", kDrive)), 0) << all();
   (void)run(fmt::format("jog 10rpm --for 100ms --yes {}", kDrive));
   EXPECT_FALSE(says("in force after a restart")) << all();
+}
+
+TEST_F(OwedRestart, OfADriveThatNeedsItsPowerOffIsNotEndedByAnNmtReset) {
+  constexpr const char* kTs = "-n 1 -d ts -b sim:ts@1";
+  ASSERT_EQ(run(fmt::format("write 0x2000 20 --unlock {}", kTs)), 0) << all();
+  EXPECT_TRUE(owes(kTs) && says("which loses it unless it is stored first")) << all();
+  ASSERT_EQ(run(fmt::format("nmt reset --wait --yes {}", kTs)), 0) << all();
+  EXPECT_TRUE(owes(kTs)) << all();
+  EXPECT_TRUE(says("switch it off and on")) << all();
+  EXPECT_TRUE(owes("-n 1 -b sim:ts@1") && says("switch it off and on")) << "without its family: " << all();
+}
+
+TEST_F(OwedRestart, ACabinetThatSaysTheUnitsOfAfterTheRestartMovesNothingBeforeIt) {
+  shell->defaults().cabinet = folder / "cabinet.toml";
+  write(
+      "[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.lift]\nbus = \"main\"\nnode = 1\nfamily = \"gsd600\"\n"
+      "turn = 8388608\nparameters = { Pn0456 = 0, Pn0457 = 23 }\n");
+  ASSERT_EQ(run("cabinet apply --yes"), 0) << all();
+  EXPECT_EQ(run("jog lift 10rpm --for 100ms --yes"), 8) << all();
+  EXPECT_TRUE(says("what a turn of the motor is, is not known")) << all();
+}
+
+/// A restart may have gone by unseen.
+TEST_F(OwedRestart, WhatIsKeptAddsCautionsAndTakesNoneAway) {
+  const show::OwedRestartFile file(folder / "state", "sim:gsd600@1", 1);
+  ASSERT_EQ(run(fmt::format("param set Pn0603=0 --keep {}", kDrive)), 0) << all();
+  ASSERT_EQ(run(fmt::format("nmt reset --wait --yes {}", kDrive)), 0) << all();
+  ASSERT_EQ(run(fmt::format("param set Pn0603=3 {}", kDrive)), 0) << all();
+  ASSERT_TRUE(owes(kDrive)) << all();
+  EXPECT_EQ(run(fmt::format("home 17 --speed 60rpm --turn 131072 --limit 100rpm --yes {}", kDrive)), 8)
+      << all();
+  EXPECT_TRUE(says("which the drive ignores: Pn0603 = 3")) << all();
+}
+
+TEST_F(OwedRestart, WhatAnotherProgramHasWrittenStays) {
+  const show::OwedRestartFile file(folder / "state", "sim:gsd600@1", 1);
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  auto kept = file.read();
+  ASSERT_TRUE(kept && *kept);
+  (*kept)->values.push_back({{0x2003, 4}, {}, Bytes{3, 0}});
+  ASSERT_TRUE(file.write(**kept));
+  ASSERT_EQ(run(fmt::format("param set Pn0011=1 {}", kDrive)), 0) << all();
+  kept = file.read();
+  ASSERT_TRUE(kept && *kept);
+  EXPECT_EQ((*kept)->values.size(), 3U);
+}
+
+TEST_F(OwedRestart, AResetOfAllNodesIsHeard) {
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  EXPECT_EQ(run("nmt reset -n all --yes -b sim:gsd600@1"), 0) << all();
+  EXPECT_FALSE(owes(kDrive)) << all();
+}
+
+TEST_F(OwedRestart, ThatCannotBeReadIsTold) {
+  std::ofstream(folder / "state" /
+                (std::string("restart-") + show::bus_name("sim:gsd600@1") + "-node-1.json"))
+      << "{";
+  (void)run(fmt::format("status {}", kDrive));
+  EXPECT_TRUE(says("node 1: what waits for a restart is not known")) << all();
+}
+
+TEST_F(OwedRestart, NothingIsForgottenUnderReadOnly) {
+  ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
+  EXPECT_EQ(run(fmt::format("status --restarted --read-only {}", kDrive)), 8) << all();
+  EXPECT_EQ(run(fmt::format("status --restarted --dry-run {}", kDrive)), 0) << all();
+  EXPECT_TRUE(owes(kDrive)) << all();
 }
 
 TEST_F(OwedRestart, ACabinetSaysThatTheRestartIsToCome) {
@@ -77,7 +151,7 @@ TEST_F(OwedRestart, ACabinetSaysThatTheRestartIsToCome) {
       "[bus.main]\nurl = \"sim:gsd600@1\"\n[axis.lift]\nbus = \"main\"\nnode = 1\nfamily = \"gsd600\"\n"
       "parameters = { Pn0601 = 0 }\n");
   ASSERT_EQ(run("cabinet apply --yes"), 0) << all();
-  EXPECT_TRUE(says("axis lift: stored, in force after a restart: Pn0601")) << all();
+  EXPECT_TRUE(says("needs a restart (Pn0601)")) << all();
   EXPECT_EQ(run("cabinet plan"), 1) << all();
   EXPECT_TRUE(says("nothing to write; needs a restart (Pn0601)")) << all();
   EXPECT_EQ(run("cabinet plan --json"), 1) << all();
@@ -110,7 +184,7 @@ TEST_F(OwedRestart, AnotherDriveAtTheNodeOwesNothing) {
   session::Identity other;
   other.node = 1;
   other.serial = 4711;
-  ASSERT_TRUE(file.write({other, {{{0x2003, 2}, Bytes{1, 0}, Bytes{0, 0}}}}));
+  ASSERT_TRUE(file.write({other, {{{0x2003, 2}, Bytes{1, 0}, Bytes{0, 0}}}, false}));
   const auto read = file.read();
   ASSERT_TRUE(read && *read);
   EXPECT_EQ((*read)->values.front().in_force, (Bytes{1, 0}));

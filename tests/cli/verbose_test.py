@@ -39,7 +39,7 @@ def is_told(what, pattern, text):
 def on_a_bus(bus, family, kind, words=("status",)):
     told = run(*words, "-b", bus, "-n", "1", "-d", family, "-v")[1]
     is_told(bus, rf"^detail: bus {re.escape(bus)} is open \({kind}\); longest wait for an answer: 500 ms, retries of a read: 1$", told)
-    is_told(bus, rf"^detail: family {family}: named by -d; objects from .*{family}", told)
+    is_told(bus, rf"^detail: family {family}: named by --drive; objects from .*{family}", told)
     is_told(bus, r"^detail: node 1, object 0x[0-9A-F]{4}:[0-9A-F]+h? \(.+\): read in \d+\.\d ms: .+ \(bytes: [0-9A-F]{2}", told)
 
 

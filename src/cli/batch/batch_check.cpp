@@ -43,7 +43,7 @@ class Check {
     if (is_choice(words) || asks_for_help(words)) return {};
     const auto parsed = parse_line(shell_->name_axes(words, match_command(words)));
     if (!parsed) return fail(parsed.error());
-    const auto settings = apply_options(settings_, parsed->arguments);
+    const auto settings = settings_of(*parsed, settings_);
     if (!settings) return fail(settings.error());
     std::vector<std::string> notices;  // The run tells them.
     auto parts = shell_->parts_of_line(*parsed, *settings, notices);
