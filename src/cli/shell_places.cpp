@@ -108,7 +108,10 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
   auto of_file = settings.value_or(given);
   if (!settings) of_file.bus.clear();
   auto parts = parts_of(**known, command, line.arguments, of_file, notices);
-  if (!settings && parts) parts->push_back({given, {}, {}});
+  if (!settings && parts) {
+    parts->push_back({given, {}, {}});
+    parts->back().settings.of_cabinet = true;  // The other buses stay open.
+  }
   if (parts)
     if (const auto good = check_several(command, line.arguments, *parts); !good) return fail(good.error());
   return parts;

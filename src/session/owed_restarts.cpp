@@ -32,10 +32,11 @@ void OwedRestarts::settle(Node& node, Starts starts) {
 void OwedRestarts::take(Node& node, ObjectAddress object, const Bytes& now, bool written) {
   const auto owed = std::ranges::find(node.values, object, &OwedValue::object);
   if (owed != node.values.end()) {
+    const bool kept = written ? node.to_flash : owed->kept;
+    node.changed = node.changed || owed->kept != kept || owed->stored != now;
+    owed->kept = kept;
     if (owed->stored == now) return;
-    node.changed = true;
     owed->stored = now;
-    owed->kept = node.to_flash;
     owed->earlier = false;
     if (owed->in_force != now) return;
     node.seen[object] = now;

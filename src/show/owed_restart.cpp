@@ -197,18 +197,19 @@ std::string owed_notice(const Desk& desk, std::uint8_t node) {
                      "`status --restarted -n {0}` says that it was",
                      node, what)
                : fmt::format(
-                     "node {0}: written, in force after a restart, which loses it unless it is stored first "
+                     "node {0}: written, in force after a restart, which may lose it unless it is stored first "
                      "(`store`): {1}; `nmt reset -n {0} --wait` restarts it, `status --restarted -n {0}` says "
                      "that it was",
                      node, what);
-  return kept ? fmt::format(
-                    "node {0}: stored, in force after a restart: {1}; switch it off and on, then "
-                    "`status --restarted -n {0}`",
-                    node, what)
-              : fmt::format(
-                    "node {0}: written, in force after a restart, which loses it unless it is stored first "
-                    "(`store`): {1}; switch it off and on, then `status --restarted -n {0}`",
-                    node, what);
+  return kept
+             ? fmt::format(
+                   "node {0}: stored, in force after a restart: {1}; switch it off and on, then "
+                   "`status --restarted -n {0}`",
+                   node, what)
+             : fmt::format(
+                   "node {0}: written, in force after a restart, which may lose it unless it is stored first "
+                   "(`store`): {1}; switch it off and on, then `status --restarted -n {0}`",
+                   node, what);
 }
 
 }  // namespace servoctl::show

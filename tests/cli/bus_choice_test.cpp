@@ -54,7 +54,7 @@ TEST_F(BusChoice, ABusAndAFileOfOneLineMustNotContradictEachOther) {
 
 /// Whatever was set before, and wherever it contradicts the file.
 TEST_F(BusChoice, NothingThatIsSetKeepsADriveFromBeingStopped) {
-  ASSERT_EQ(run("enable -n feeder1 --turn 131072 --yes"), 0) << all();
+  ASSERT_EQ(run("enable -n feeder1 --yes"), 0) << all();
   shell->defaults().drive = "ts";
   shell->defaults().drive_from = Source::set;
   EXPECT_EQ(run("stop"), 0) << all();
