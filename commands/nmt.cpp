@@ -112,7 +112,10 @@ Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Bef
   // Over a gateway a node that answers no SDO cannot be heard.
   if (stops && session.can() == nullptr) return {};
   if (is_reset(command))
-    if (const auto booted = wait_for_boots(session, nodes); !booted) return booted;
+    if (const auto back = session.can() != nullptr ? wait_for_boots(session, nodes)
+                                                   : session::wait_for_answers(session, nodes, kBootPatience);
+        !back)
+      return back;
   if (const auto heard = session::hear_who_lives(session, nodes, kGuardPatience); !heard) return heard;
   // A stopped node is heard to be two only once it has started.
   for (const auto& entry : nodes)

@@ -43,6 +43,17 @@ Result<void> ask_who_answers(Session& session, std::span<NodeLife> nodes) {
   return {};
 }
 
+Result<void> wait_for_answers(Session& session, std::span<NodeLife> nodes, Duration patience) {
+  const auto until = session.now() + patience;
+  do {
+    if (const auto asked = ask_who_answers(session, nodes); !asked) return asked;
+    if (std::ranges::all_of(nodes, &NodeLife::alive)) return {};
+    const auto paused = session.wait([] { return false; }, session.now() + std::chrono::milliseconds(100));
+    if (!paused) return fail(paused.error());
+  } while (session.now() < until);
+  return {};
+}
+
 Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration least) {
   if (const auto asked = ask_who_answers(session, nodes); !asked) return asked;
   std::vector<std::uint8_t> ids;

@@ -23,6 +23,9 @@ std::vector<NodeLife> look_from_now(const Session& session, std::span<const std:
 /// request (CiA 301, 7.3.2.2.1). Errc::bus and Errc::interrupted.
 Result<void> ask_who_answers(Session& session, std::span<NodeLife> nodes);
 
+/// Asks until all have answered, at most for `patience`. Errors as there.
+Result<void> wait_for_answers(Session& session, std::span<NodeLife> nodes, Duration patience);
+
 /// Asks them, and hears whether two drives have one node-ID: what starts or resets a node goes to one drive.
 /// `least`: as that of settle_duplicates(). Errc::refused, and errors of the bus.
 Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration least);
