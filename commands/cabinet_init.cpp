@@ -9,6 +9,7 @@
 #include "command/command.hpp"
 #include "session/identify.hpp"
 #include "session/scan.hpp"
+#include "show/identity.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -99,11 +100,11 @@ class Init {
       if (!there) return fail(there.error());
       nodes = std::move(*there);
     }
-    auto identities = session::scan(session, nodes);
+    const auto all = drive::find_families(context_->drive_folders);
+    auto identities = session::scan(session, nodes, nullptr, show::warn_of_details(*context_, all));
     if (!identities) return fail(identities.error());
     if (identities->empty())
       return fail(Errc::timeout, "no node answers", "`scan` looks again; is the bitrate right?");
-    const auto all = drive::find_families(context_->drive_folders);
     session::look_for_families(session, *identities, all);
     std::vector<FoundAxis> out;
     for (const auto& identity : *identities) out.push_back(axis_of(identity, all));

@@ -79,7 +79,7 @@ void stop_other_axes(Context& context, std::uint8_t node, motion::PowerAim aim) 
   for (const auto& axis : others) context.notices.push_back(fmt::format("node {}: {}", node, axis.text()));
 }
 
-Value planned_disable(const Context& context, motion::PowerAim aim) {
+Value planned_disable(Context& context, motion::PowerAim aim) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes)
     for (auto& message : motion::planned_power_down(node, aim)) messages.push_back(std::move(message));

@@ -119,9 +119,10 @@ Result<report::Value> info_of_registers(Context& context) {
 Result<report::Value> run_info(Context& context, const Arguments&) {
   if (context.session->modbus() != nullptr) return info_of_registers(context);
   std::vector<Error> away;
-  auto found = session::scan(*context.session, context.nodes, &away);
-  if (!found) return fail(found.error());
   const auto families = drive::find_families(context.drive_folders);
+  auto found =
+      session::scan(*context.session, context.nodes, &away, show::warn_of_details(context, families));
+  if (!found) return fail(found.error());
   session::look_for_families(*context.session, *found, families);
   std::vector<session::SdoRequest> requests;
   for (const auto& node : *found)

@@ -1,9 +1,14 @@
 #include <fmt/format.h>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/transfer_option.hpp"
 #include "command/type_option.hpp"
+#include "session/session.hpp"
+#include "session/wary.hpp"
 #include "settings/file_transfer.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
@@ -111,6 +116,25 @@ Result<report::Value> run_to_file(Context& context, const Arguments& arguments) 
                                 read_transfer(context, arguments, true), arguments.text("--to"));
 }
 
+/// Asks before a request that raises an alarm on the drive. Errc::refused where nobody agrees.
+Result<void> confirm_alarms(const Context& context, std::span<session::SdoRequest> requests) {
+  const auto alarm_of = [&](const session::SdoRequest& request) {
+    return session::access_alarm(*context.session, request.node, request.object);
+  };
+  std::string objects;
+  const session::SdoRequest* first = nullptr;
+  for (auto& request : requests) {
+    if (alarm_of(request).empty()) continue;
+    request.despite_alarm = true;
+    if (first == nullptr) first = &request;
+    append(objects, fmt::format("{} of node {}", to_string(request.object), request.node));
+  }
+  if (first == nullptr) return {};
+  return context.confirm(
+      fmt::format("Read {}? The data of {} have no such object, and a request for it raises the alarm {}.",
+                  objects, context.session->wary_of(first->node)->family, alarm_of(*first)));
+}
+
 Result<report::Value> run_read(Context& context, const Arguments& arguments) {
   if (arguments.has("--to")) return run_to_file(context, arguments);
   const auto type = parse_type_option(arguments);
@@ -130,6 +154,7 @@ Result<report::Value> run_read(Context& context, const Arguments& arguments) {
       }
     }
   }
+  if (const auto agreed = confirm_alarms(context, requests); !agreed) return fail(agreed.error());
   auto answers = context.session->transfer(requests);
   for (std::size_t i = 0; i < readings.size(); ++i) readings[i].bytes = std::move(answers[i]);
   return report::Value(show::reading_table(context, readings));
@@ -152,7 +177,8 @@ const Command kRead{
         "fits. An address needs none, and its value is then shown as an unsigned number of its length. Index and sub-index are hexadecimal. With a dictionary the index of a record or an array alone "
         "reads all of it, and a pattern ('0x60*', '*velocity*') every object that fits; what the drive refuses of "
         "them is shown with its abort, and what cannot be read is left out. With --to the bytes of one object of any size go to a "
-        "file; block transfer is tried first where the drive may support it.",
+        "file; block transfer is tried first where the drive may support it. If the family's data say that the drive raises an alarm "
+        "when it is asked for an object that it does not have, such a read asks first.",
     .parameters = kReadParameters,
     .examples = kReadExamples,
     .needs = Needs::node,

@@ -125,8 +125,10 @@ Result<report::Value> run_scan(Context& context, const Arguments& arguments) {
   // The interface is put back, or left where nodes answered, on every way out.
   const auto hold = context.session->protect(all_bitrates ? session::Care::unsettled : session::Care::none);
   const auto named = all_bitrates ? std::make_unique<session::NamedBitrate>(*context.session) : nullptr;
-  auto found =
-      all_bitrates ? show::scan_all_bitrates(context, nodes) : session::scan(*context.session, nodes);
+  const auto families = drive::find_families(context.drive_folders);
+  const auto warn = show::warn_of_details(context, families);
+  auto found = all_bitrates ? show::scan_all_bitrates(context, nodes, warn)
+                            : session::scan(*context.session, nodes, nullptr, warn);
   if (!found) return fail(found.error());
   if (found->empty()) {
     context.errors.push_back(make_error(
@@ -134,7 +136,6 @@ Result<report::Value> run_scan(Context& context, const Arguments& arguments) {
         "check power, cable, 120 ohm at both ends, and that the interface has the drives' bitrate; a stopped "
         "node does not answer: `nmt preop -n all`"));
   }
-  const auto families = drive::find_families(context.drive_folders);
   session::look_for_families(*context.session, *found, families);
   std::vector<std::uint8_t> there;
   for (const auto& node : *found) there.push_back(node.node);

@@ -50,7 +50,7 @@ Result<void> take_over(Context& context, session::EtherCatNetwork& ring) {
   return {};
 }
 
-Value planned_state(const Context& context, NodeState target) {
+Value planned_state(Context& context, NodeState target) {
   std::vector<session::PlannedMessage> messages;
   const auto when = "outputs preset: 607Ah from 6064h, 6040h 60FFh 6071h zero";
   for (const auto node : context.nodes) {

@@ -5,6 +5,7 @@
 #include "drive/standard_objects.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
+#include "session/wary.hpp"
 
 namespace servoctl::cabinet {
 namespace {
@@ -28,6 +29,7 @@ Result<void> hold_family(show::Desk& desk, const Axis& axis, std::span<const dri
   if (verdict.kind == FamilyVerdict::Kind::unproven)
     desk.notices.push_back(fmt::format("node {}: nothing proves that it is a {}: {}", axis.node,
                                        desk.profile->family, verdict.why));
+  session::be_wary_of_family(*desk.session, axis.node, *desk.profile);
   if (const auto heard = desk.session->listen(); !heard) return heard;
   return session::refuse_duplicate(*desk.session, axis.node);
 }

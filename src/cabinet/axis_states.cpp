@@ -11,6 +11,7 @@
 #include "session/ethercat_network.hpp"
 #include "session/ring_state.hpp"
 #include "session/state_pause.hpp"
+#include "session/wary.hpp"
 #include "show/axis_names.hpp"
 #include "show/fault_records.hpp"
 #include "show/ring_table.hpp"
@@ -94,9 +95,10 @@ void AxisStates::look_on(const Bus& bus, std::vector<AxisState>& out) {
   auto& session = **opened;
   std::vector<session::SdoRequest> requests;
   for (const auto* look : mine) {
-    if (auto* ring = session.ethercat())
-      if (const auto profile = load_(look->axis->family))
-        ring->learn(look->axis->node, (*profile)->rules.coe);
+    if (const auto profile = load_(look->axis->family)) {
+      if (auto* ring = session.ethercat()) ring->learn(look->axis->node, (*profile)->rules.coe);
+      session::be_wary_of_family(session, look->axis->node, **profile);
+    }
     for (const auto object : kObjects) requests.push_back({look->axis->node, object});
   }
   const auto answers = session.transfer(requests);

@@ -7,6 +7,7 @@
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
 #include "session/scan.hpp"
+#include "session/wary.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -43,6 +44,9 @@ Result<void> FamilyGate::hold(std::span<const std::uint8_t> nodes, const drive::
   if (profile != nullptr && weight == Weight::reads) tell_known(nodes, *profile);
   if (profile != nullptr && weight != Weight::reads)
     if (const auto fits = ask_all(nodes, *profile, weight); !fits) return fits;
+  // Also with --force-family: what the user named decides.
+  if (profile != nullptr)
+    for (const auto node : nodes) session::be_wary_of_family(*session_, node, *profile);
   if (weight != Weight::changes) return {};
   if (profile == nullptr && !options_.dry_run)
     if (const auto there = ask_who(nodes); !there) return there;

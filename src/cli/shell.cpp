@@ -14,12 +14,14 @@
 #include "cli/output_files.hpp"
 #include "cli/terminal/signals.hpp"
 #include "command/help_text.hpp"
+#include "drive/access_alarms.hpp"
 #include "report/catalogue.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/modbus_network.hpp"
 #include "session/scan.hpp"
 #include "session/serve_registers.hpp"
 #include "session/serve_ring.hpp"
+#include "session/wary.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cli {
@@ -36,8 +38,17 @@ void learn_family(session::Session& session, std::span<const std::uint8_t> nodes
   auto* line = session.modbus();
   for (const auto node : nodes) {
     if (ring != nullptr) ring->learn(node, profile.rules.coe);
+    session::be_wary_of_family(session, node, profile);
     if (line != nullptr) line->learn(node, profile.rules.modbus);
   }
+}
+
+/// Whether the command reads of nodes. Whoever writes asks the drive what it is. A recording (replay:)
+/// answers only what was asked when it was made.
+bool only_reads(const command::Command& command, const command::Arguments& arguments,
+                const session::Session& session) {
+  return includes(command.needs, Needs::node) && !command.to_silent && !command.to_all &&
+         command.effect_with(arguments) == Effect::reads && !session.url().starts_with("replay:");
 }
 
 /// Whatever is told of a line speaks of axes by their names.
@@ -178,7 +189,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
     return fits;
   if (const auto possible = admit(command, arguments, **opened); !possible) return possible;
   if (const auto named = prepare_nodes(run); !named) return named;
-  if (run.context.profile != nullptr) learn_family(**opened, run.context.nodes, *run.context.profile);
+  be_wary(run, arguments);
   const auto weight = weight_of(command, arguments);
   run.changes = weight == FamilyGate::Weight::changes && !run.settings.dry_run;
   run.line.wait_for_late(command.effect_with(arguments) >= command::Effect::stores);
@@ -186,6 +197,22 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
     return held;
   const bool changes = command.effect_with(arguments) >= Effect::writes && !command.way_out;
   return changes ? hold_serials(run) : Result<void>();
+}
+
+/// Before anything else is read: finds the drives that must not be asked for what they do not have.
+void Shell::be_wary(Run& run, const command::Arguments& arguments) {
+  auto& session = *run.context.session;
+  const auto* profile = run.context.profile;
+  auto nodes = run.context.nodes;
+  const bool any = profile == nullptr || profile->is_generic() || profile->of_file;
+  const bool is_decided = profile != nullptr && drive::has_access_alarms(profile->rules);
+  // Another drive may be there since its boot-up, and what an earlier line named may be wrong.
+  if (is_decided)
+    nodes.clear();
+  else if (!any || !only_reads(*run.command, arguments, session))
+    std::erase_if(nodes, [&](std::uint8_t node) { return session.wary_of(node) == nullptr; });
+  if (session.modbus() == nullptr) session::consider_numbers(session, nodes);
+  if (profile != nullptr) learn_family(session, run.context.nodes, *profile);
 }
 
 /// A command without a bus takes the nodes as they are written.

@@ -217,6 +217,7 @@ class Shell {
   Result<void> ask_drive(Run& run);
   Result<const drive::Profile*> device_of_node(Run& run, const Error& why);
   Result<void> prepare_nodes(Run& run);
+  void be_wary(Run& run, const command::Arguments& arguments);
   static Result<void> hold_serials(Run& run);
   void tell_trace_failure(Run& run);
   /// What a drive is decides what is said of it, whichever command made it so.

@@ -71,6 +71,7 @@ session::Options Shell::session_options() {
   session::Options out;
   out.cancelled = options_.cancelled;
   out.signals = times_signalled;
+  out.drive_folders = [this]() -> std::span<const std::filesystem::path> { return options_.drive_folders; };
   out.protection = &protection_;
   // Two that start at once have process numbers close together, or other times.
   constexpr std::uint64_t kSpread = 0x9E37'79B9'7F4A'7C15;

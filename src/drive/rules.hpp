@@ -221,6 +221,8 @@ struct FaultRules {
   std::string mapping_alarm;    ///< … of mapping in Operational.
   std::string range_alarm;      ///< … of a value out of range.
   std::string access_alarm;     ///< … of a write to what cannot be written.
+  std::string object_alarm;     ///< … of a read or write of an object that the drive does not have.
+  std::string sub_index_alarm;  ///< … of a sub-index that its object does not have.
   std::string following_alarm;  ///< … of a following error; empty: 8611h (CiA 402-2).
 };
 

@@ -278,6 +278,8 @@ Result<void> read_fault(const TableReader& reader, Rules& rules) {
                       {"mapping_alarm", into(out.mapping_alarm)},
                       {"range_alarm", into(out.range_alarm)},
                       {"access_alarm", into(out.access_alarm)},
+                      {"object_alarm", into(out.object_alarm)},
+                      {"sub_index_alarm", into(out.sub_index_alarm)},
                       {"following_alarm", into(out.following_alarm)}});
 }
 

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "session/wary.hpp"
+
 namespace servoctl::motion {
 namespace {
 
@@ -120,6 +122,8 @@ class DialogueRun {
   void start(Lane& channel, session::SdoRequest asked) {
     const auto& request = channel.request = std::move(asked);
     channel.begun = session_->now();
+    if (auto refusal = session::refusal_of(*session_, channel.dialogue->node(), request.object))
+      return channel.dialogue->on_answer(fail(std::move(*refusal)), channel.begun);
     if (request.data)
       channel.objects->start_download(request.object, *request.data, channel.begun, request.transfer);
     else

@@ -26,7 +26,8 @@ Result<bool> tune(Session& session, can::LinkControl& link, std::uint32_t bitrat
 }
 
 Result<Asked> ask_at(Session& session, can::LinkControl& link, std::span<const std::uint8_t> nodes,
-                     std::uint32_t bitrate, std::vector<Identity>& found) {
+                     std::uint32_t bitrate, const BeforeDetails& before_details,
+                     std::vector<Identity>& found) {
   Asked out{.bitrate = bitrate};
   const auto tuned = tune(session, link, bitrate);
   if (!tuned) return fail(tuned.error());
@@ -34,7 +35,7 @@ Result<Asked> ask_at(Session& session, can::LinkControl& link, std::span<const s
     out.why = "not possible";
     return out;
   }
-  auto answers = scan(session, nodes);
+  auto answers = scan(session, nodes, nullptr, before_details);
   // A question at a wrong bitrate ends in a bus-off where others are there to disturb it.
   if (!answers && answers.error().code != Errc::bus) return fail(answers.error());
   if (!answers) {
@@ -72,7 +73,8 @@ Result<void> hold_silence(can::LinkControl& link, Duration time, const std::func
 Result<BitrateScan> scan_bitrates(Session& session, can::LinkControl& link,
                                   std::span<const std::uint8_t> nodes,
                                   std::span<const std::uint32_t> bitrates,
-                                  const std::function<void(const Asked&)>& told) {
+                                  const std::function<void(const Asked&)>& told,
+                                  const BeforeDetails& before_details) {
   const auto before = link.state();
   if (!before) return fail(before.error());
   if (before->kind != "can")
@@ -80,7 +82,7 @@ Result<BitrateScan> scan_bitrates(Session& session, can::LinkControl& link,
   can::LinkKeeper keeper(link, *before);
   BitrateScan out;
   for (const auto bitrate : bitrates) {
-    const auto asked = ask_at(session, link, nodes, bitrate, out.found);
+    const auto asked = ask_at(session, link, nodes, bitrate, before_details, out.found);
     if (!asked) {
       (void)keeper.put_back();
       (void)session.network().recover(session.now() + kComingUp);

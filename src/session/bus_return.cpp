@@ -62,7 +62,8 @@ Result<void> BusReturn::hold(std::span<const Identity> before) {
     if (!one.revision) now->revision.reset();
     if (!one.serial) now->serial.reset();
     auto change = different_number(one, *now);
-    if (change.empty() && one.device_name != now->device_name) change = "its name (1008h)";
+    const bool both_named = !one.device_name.empty() && !now->device_name.empty();
+    if (change.empty() && both_named && one.device_name != now->device_name) change = "its name (1008h)";
     if (!change.empty())
       return fail(drive_error(
           Errc::refused, one.node,

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <utility>
 
+#include "drive/access_alarms.hpp"
 #include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
 #include "session/can_network.hpp"
 #include "session/family_check.hpp"
+#include "session/wary.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -26,16 +29,75 @@ Result<void> listen_until(Session& session, TimePoint end) {
   return session.listen();  // What came before, too, where the end is past.
 }
 
-/// Of 1000h, 1018h:01 and :02, 1008h, and 1018h:03 where it was asked for.
-Identity identity_in(std::uint8_t node, std::span<const Result<Bytes>> answers, bool with_revision) {
-  Identity out;
-  out.node = node;
-  out.device_type = u32_in(answers[0]);
-  out.vendor_id = u32_in(answers[1]);
-  out.product_code = u32_in(answers[2]);
-  out.device_name = text_in(answers[3]);
-  if (with_revision) out.revision = u32_in(answers[4]);
+/// What decides what a drive may be asked for: 1000h, 1018h:01 and :02; with 1018h:03 where it is wanted. A
+/// node that does not answer has an error.
+std::vector<Result<Identity>> read_numbers(Session& session, std::span<const std::uint8_t> nodes,
+                                           const drive::Rules& rules, bool with_revision) {
+  std::vector<ObjectAddress> objects{objects::kDeviceType, objects::kVendorId, objects::kProductCode};
+  if (with_revision) objects.push_back(objects::kRevision);
+  std::vector<SdoRequest> requests;
+  for (const auto node : nodes)
+    for (const auto object : objects) requests.push_back({node, object, {}});
+  const auto answers = session.transfer(requests);
+  std::vector<Result<Identity>> out;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto here = std::span(answers).subspan(i * objects.size(), objects.size());
+    const auto silent = std::find_if(here.begin(), here.end(), [](const auto& a) { return !tells(a); });
+    if (silent != here.end()) {
+      out.emplace_back(fail(silent->error()));
+      continue;
+    }
+    Identity identity;
+    identity.node = nodes[i];
+    identity.by_registers = session.modbus() != nullptr;
+    identity.device_type = u32_in(here[0]);
+    identity.vendor_id = u32_in(here[1]);
+    identity.product_code = u32_in(here[2]);
+    if (with_revision) identity.revision = u32_in(here[3]);
+    // Where the family that was named fits, no other has to be looked for.
+    if (has_marks(rules) && agrees_in_numbers(identity, rules) && !drive::has_access_alarms(rules))
+      session.be_wary(nodes[i], nullptr, true);
+    else
+      consider_numbers(session, identity);
+    out.emplace_back(std::move(identity));
+  }
   return out;
+}
+
+/// False where the family that its numbers tell raises access alarms and its data do not list the object.
+bool is_listed(const Session& session, std::uint8_t node, ObjectAddress object) {
+  const auto* profile = session.wary_of(node);
+  return profile == nullptr || profile->dictionary.find(object) != nullptr;
+}
+
+/// The rest of what tells the family: 1008h, and the own objects of the family that was named.
+void read_details(Session& session, std::span<Result<Identity>> identities, const drive::Rules& rules) {
+  std::vector<ObjectAddress> objects{objects::kDeviceName};
+  objects.insert(objects.end(), rules.identity_looks.begin(), rules.identity_looks.end());
+  std::vector<SdoRequest> requests;
+  for (const auto& identity : identities)
+    for (const auto object : objects)
+      if (identity && is_listed(session, identity->node, object))
+        requests.push_back({identity->node, object, {}});
+  const auto answers = session.transfer(requests);
+  auto at = answers.begin();
+  for (auto& identity : identities) {
+    if (!identity) continue;
+    const auto node = identity->node;
+    for (const auto object : rules.identity_looks) identity->looked.emplace(object, false);
+    for (const auto object : objects) {
+      if (!is_listed(session, node, object)) continue;
+      const auto& answer = *at++;
+      if (!identity) continue;
+      if (!tells(answer))
+        identity = fail(answer.error());
+      else if (object == objects::kDeviceName)
+        identity->device_name = text_in(answer);
+      else
+        identity->looked[object] = answer.has_value();
+    }
+    if (identity) session.identities().keep(*identity, session.watch().boots(node));
+  }
 }
 
 /// As it is kept, if it has everything that is asked for; else null.
@@ -54,44 +116,26 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
                                        const drive::Rules& rules) {
   const bool with_revision = std::any_of(rules.identity.begin(), rules.identity.end(),
                                          [](const auto& mark) { return mark.object == objects::kRevision; });
-  const auto known = [&](std::uint8_t node) { return known_identity(session, node, rules, with_revision); };
-  std::vector<ObjectAddress> objects{objects::kDeviceType, objects::kVendorId, objects::kProductCode,
-                                     objects::kDeviceName};
-  if (with_revision) objects.push_back(objects::kRevision);
-  const auto looks_at = objects.size();
-  objects.insert(objects.end(), rules.identity_looks.begin(), rules.identity_looks.end());
-  std::vector<SdoRequest> requests;
+  std::vector<std::uint8_t> asked;
   for (const auto node : nodes)
-    if (known(node) == nullptr)
-      for (const auto object : objects) requests.push_back({node, object, {}});
-  const auto answers = session.transfer(requests);
+    if (known_identity(session, node, rules, with_revision) == nullptr) asked.push_back(node);
+  auto fresh = read_numbers(session, asked, rules, with_revision);
+  read_details(session, fresh, rules);
   std::vector<Result<Identity>> out;
-  auto at = answers.begin();
+  auto at = fresh.begin();
   for (const auto node : nodes) {
-    if (const auto* found = known(node)) {
-      out.emplace_back(*found);
-      continue;
-    }
-    const auto here = std::span(at, objects.size());
-    at += static_cast<std::ptrdiff_t>(objects.size());
-    const auto silent = std::find_if(here.begin(), here.end(), [](const auto& a) { return !tells(a); });
-    if (silent != here.end()) {
-      out.emplace_back(fail(silent->error()));
-      continue;
-    }
-    auto identity = identity_in(node, here, with_revision);
-    identity.by_registers = session.modbus() != nullptr;
-    for (std::size_t i = looks_at; i < objects.size(); ++i)
-      identity.looked.emplace(objects[i], here[i].has_value());
-    session.identities().keep(identity, session.watch().boots(node));
-    out.emplace_back(std::move(identity));
+    const bool is_fresh = std::find(asked.begin(), asked.end(), node) != asked.end();
+    out.push_back(is_fresh ? std::move(*at++)
+                           : Result<Identity>(*known_identity(session, node, rules, with_revision)));
   }
   // What is wrong with the bus is told by what follows.
-  if (!requests.empty()) (void)settle_duplicates(session, nodes, kBeforeWrites);
+  if (!asked.empty()) (void)settle_duplicates(session, nodes, kBeforeWrites);
   return out;
 }
 
 Result<Identity> read_identity(Session& session, std::uint8_t node) {
+  const std::uint8_t nodes[] = {node};
+  consider_numbers(session, nodes);
   const ObjectAddress objects[] = {objects::kDeviceType, objects::kVendorId,     objects::kProductCode,
                                    objects::kRevision,   objects::kSerialNumber, objects::kDeviceName};
   std::vector<SdoRequest> requests;
@@ -118,6 +162,10 @@ void look_for_families(Session& session, std::span<Identity> identities,
   std::vector<SdoRequest> requests;
   std::vector<Identity*> whose;
   if (session.modbus() != nullptr) families = {};
+  // A family that was named does not decide what is asked of a drive whose numbers contradict it.
+  for (const auto& identity : identities)
+    if (!identity.by_registers && (identity.device_type || identity.vendor_id))
+      consider_numbers(session, identity);
   for (const auto& family : families) {
     const auto shared = drive::shared_rules(family);
     if (!shared) continue;
@@ -125,6 +173,10 @@ void look_for_families(Session& session, std::span<Identity> identities,
     for (auto& identity : identities)
       if (fits(identity, rules))
         for (const auto object : rules.identity_looks) {
+          if (!is_listed(session, identity.node, object)) {
+            identity.looked.insert_or_assign(object, false);
+            continue;
+          }
           requests.push_back({identity.node, object, {}});
           whose.push_back(&identity);
         }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/text.hpp"
 #include "canopen/node_list.hpp"
 #include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
@@ -15,6 +16,7 @@
 #include "session/identify.hpp"
 #include "session/modbus_network.hpp"
 #include "session/option_scope.hpp"
+#include "session/wary.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -39,6 +41,10 @@ Duration scan_patience(Session& session) {
 /// The first nodes' worth of requests asks who is there.
 Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::uint8_t> nodes,
                                          std::vector<Error>* away) {
+  // Whoever looks again may have put it right.
+  if (auto* can = session.can())
+    for (const auto node : nodes)
+      if (!can->duplicates().noticed(node).empty()) can->duplicates().forget(node);
   std::vector<SdoRequest> requests;
   for (const auto node : nodes) requests.push_back({node, objects::kDeviceType, {}});
   const auto answers = [&] {
@@ -67,34 +73,53 @@ Result<std::vector<Identity>> find_nodes(Session& session, std::span<const std::
   return found;
 }
 
-}  // namespace
-
-Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes,
-                                   std::vector<Error>* away) {
-  // Whoever looks again may have put it right.
-  if (auto* can = session.can())
-    for (const auto node : nodes)
-      if (!can->duplicates().noticed(node).empty()) can->duplicates().forget(node);
-  auto found = find_nodes(session, nodes, away);
-  if (!found) return found;
+/// 1018h, of those that were found. It decides what they may be asked for.
+void read_numbers(Session& session, std::span<Identity> found) {
   std::vector<SdoRequest> requests;
-  for (const auto& identity : *found) {
+  for (const auto& identity : found)
     for (const auto object : kNumbers) requests.push_back({identity.node, object, {}});
-    for (const auto object : kTexts) requests.push_back({identity.node, object, {}});
-  }
   const auto answers = session.transfer(requests);
   auto at = answers.begin();
-  for (auto& identity : *found) {
+  for (auto& identity : found) {
     identity.vendor_id = u32_in(*at++);
     identity.product_code = u32_in(*at++);
     identity.revision = u32_in(*at++);
     identity.serial = u32_in(*at++);
+    consider_numbers(session, identity);
+  }
+}
+
+void read_texts(Session& session, std::span<Identity> found) {
+  std::vector<SdoRequest> requests;
+  for (const auto& identity : found)
+    for (const auto object : kTexts) requests.push_back({identity.node, object, {}});
+  const auto answers = session.transfer(requests);
+  auto at = answers.begin();
+  for (auto& identity : found) {
     identity.device_name = text_in(*at++);
     identity.hardware_version = text_in(*at++);
     identity.software_version = text_in(*at++);
     identity.state = session.watch().state(identity.node);
     session.identities().keep(identity, session.watch().boots(identity.node));
   }
+}
+
+/// False where the drive has a vendor-ID and the family's data name none: 1000h alone is that of many drives.
+bool names_vendor(const drive::Rules& rules, const Identity& identity) {
+  return identity.vendor_id.value_or(0) == 0 ||
+         std::any_of(rules.identity.begin(), rules.identity.end(),
+                     [](const drive::IdentityMark& mark) { return mark.object == objects::kVendorId; });
+}
+
+}  // namespace
+
+Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes,
+                                   std::vector<Error>* away, const BeforeDetails& before_details) {
+  auto found = find_nodes(session, nodes, away);
+  if (!found) return found;
+  read_numbers(session, *found);
+  if (before_details) before_details(*found);
+  read_texts(session, *found);
   // Where one did not answer, a second node had the whole timeout already.
   const auto least = found->size() < nodes.size() ? kBriefly : kScanning;
   std::vector<std::uint8_t> there;
@@ -105,14 +130,34 @@ Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_
 
 Result<std::vector<std::uint8_t>> nodes_present(Session& session) {
   if (auto* ring = session.ethercat()) return ring->nodes_with_objects();
-  const auto found = scan(session, canopen::every_node_id());
+  const auto found = find_nodes(session, canopen::every_node_id(), nullptr);
   if (!found) return fail(found.error());
   if (found->empty())
     return fail(Errc::timeout, fmt::format("no node answered on {}", session.url()),
                 "check power, cable, termination and bitrate");
   std::vector<std::uint8_t> out;
   for (const auto& identity : *found) out.push_back(identity.node);
+  const auto least = out.size() < canopen::every_node_id().size() ? kBriefly : kScanning;
+  if (const auto settled = settle_duplicates(session, out, least); !settled) return fail(settled.error());
   return out;
+}
+
+std::string warning_of_details(std::span<const Identity> identities,
+                               std::span<const drive::Family> families) {
+  std::string nodes;
+  for (const auto& identity : identities) {
+    const bool known = std::any_of(families.begin(), families.end(), [&](const drive::Family& family) {
+      const auto rules = drive::shared_rules(family);
+      return rules && has_marks(**rules) && agrees_in_numbers(identity, **rules) &&
+             names_vendor(**rules, identity);
+    });
+    if (!known && !identity.by_registers) append(nodes, fmt::format("{}", identity.node));
+  }
+  if (nodes.empty()) return {};
+  return fmt::format(
+      "node {}: 1000h and 1018h fit no known family; servoctl now reads its name (1008h to 100Ah) and objects of known "
+      "families. Some drives raise an alarm if they do not have such an object",
+      nodes);
 }
 
 std::vector<Guess> guess_families(const Identity& identity, std::span<const drive::Family> families) {

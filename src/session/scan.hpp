@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,15 +13,23 @@
 
 namespace servoctl::session {
 
+/// Called with the nodes that were found and their 1000h and 1018h, before anything else is read of them.
+using BeforeDetails = std::function<void(std::span<const Identity>)>;
+
 /// Asks all `nodes` for 1000h at once, without retries: the answer takes one timeout however many there are.
 /// A node that refuses the read is there as well. Then reads the identity of those found. Errc::bus when the
-/// bus is lost. Why each of the others was not asked goes to `away`, which may be null.
+/// bus is lost. Why each of the others was not asked goes to `away`, which may be null. First 1018h is read,
+/// then the names, of a drive that may be asked for them (consider_numbers()).
 Result<std::vector<Identity>> scan(Session& session, std::span<const std::uint8_t> nodes,
-                                   std::vector<Error>* away = nullptr);
+                                   std::vector<Error>* away = nullptr,
+                                   const BeforeDetails& before_details = {});
 
 /// The node-IDs that answer scan(); on EtherCAT EtherCatNetwork::nodes_with_objects().
 /// Errc::timeout when none does, Errc::bus when the bus is lost.
 Result<std::vector<std::uint8_t>> nodes_present(Session& session);
+
+/// The warning that names the nodes whose 1000h and 1018h fit no known family; empty if there is none.
+std::string warning_of_details(std::span<const Identity> identities, std::span<const drive::Family> families);
 
 /// A family whose identity rule fits a node, or whose own objects it has.
 struct Guess {

@@ -111,8 +111,19 @@ Result<void> Session::listen() {
 
 std::vector<NodeEvent> Session::take_events() {
   std::vector<NodeEvent> out;
-  while (auto event = network_->take_event()) out.push_back(std::move(*event));
+  while (auto event = network_->take_event()) {
+    // Another drive may come in its place.
+    if (std::holds_alternative<NodeEvent::Gone>(event->what)) identities_.forget(event->node);
+    out.push_back(std::move(*event));
+  }
   return out;
+}
+
+void Session::be_wary(std::uint8_t node, std::shared_ptr<const drive::Profile> profile, bool by_numbers) {
+  auto& wary = wary_[node & 0x7FU];
+  wary.profile = std::move(profile);
+  wary.boots.reset();
+  if (by_numbers) wary.boots = watch().boots(node);
 }
 
 std::unique_ptr<ObjectChannel> Session::lend_channel(std::uint8_t node) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -24,6 +25,9 @@
 namespace servoctl::can {
 class Bus;
 }  // namespace servoctl::can
+namespace servoctl::drive {
+struct Profile;
+}  // namespace servoctl::drive
 
 namespace servoctl::session {
 
@@ -38,6 +42,7 @@ struct SdoRequest {
   canopen::Transfer transfer = canopen::Transfer::automatic;
   std::size_t size = 0;        ///< Bytes the object has, when known; for answers that do not say it.
   TimePoint* ended = nullptr;  ///< Where to note when its answer came, or when it was given up; may be null.
+  bool despite_alarm = false;  ///< Sent although the drive may raise an alarm for it (access_alarm()).
 };
 
 struct Options {
@@ -67,6 +72,8 @@ struct Options {
   /// Told in every wait, ten times a second at most, what takes its time, or null where nobody said; may be
   /// empty.
   std::function<void(const Stretch* stretch, TimePoint now)> waiting;
+  /// The folders with the families, some of which raise access alarms (consider_numbers()); may be empty.
+  std::function<std::span<const std::filesystem::path>()> drive_folders = {};
   /// Told of every transfer that was tried, whatever carried it; may be empty.
   std::function<void(const Exchange&)> exchanged;
   /// As Network::set_ordered(), of this session; may be empty.
@@ -116,6 +123,14 @@ class Session {
   EnergisedNodes& energised() { return energised_; }
   /// What Options::protection says, for as long as the answer lives.
   Protection::Hold protect(Care care) { return {options_.protection, care}; }
+  /// From now on the node is not asked for objects that the data of this family lack, because each such
+  /// request raises an alarm on its drives; null: it is asked for everything. `by_numbers`: the drive's own
+  /// numbers decided it, and not the user.
+  void be_wary(std::uint8_t node, std::shared_ptr<const drive::Profile> profile, bool by_numbers);
+  /// Null where there is none.
+  const drive::Profile* wary_of(std::uint8_t node) const { return wary_[node & 0x7FU].profile.get(); }
+  /// Whether its numbers decided since its last boot-up: later another drive may be there.
+  bool is_considered(std::uint8_t node) const { return wary_[node & 0x7FU].boots == watch().boots(node); }
   /// Values written to the flash of a node since the bus was opened, where each write wears it.
   std::size_t& flash_writes(std::uint8_t node) { return flash_writes_[node]; }
 
@@ -168,6 +183,12 @@ class Session {
   KnownIdentities identities_;
   std::array<std::size_t, 128> flash_writes_{};
   EnergisedNodes energised_;
+  struct Wary {
+    std::shared_ptr<const drive::Profile> profile;
+    std::optional<std::uint32_t>
+        boots;  ///< Boot count of the node when its numbers decided; empty: they did not.
+  };
+  std::array<Wary, 128> wary_;
   std::array<std::unique_ptr<ObjectChannel>, 128> channels_;  ///< Those nobody uses now.
   TimePoint received_at_{};
   std::vector<const Stretch*> stretches_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "session/option_scope.hpp"
+#include "session/wary.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -101,16 +102,29 @@ bool TransferRun::advance(Lane& channel) {
 }
 
 void TransferRun::start(Lane& channel) {
-  if (channel.started == channel.requests.size()) return;
-  if (until_ != kNever && session_->now() >= until_) {
-    open_ -= channel.requests.size() - channel.started;
-    for (; channel.started < channel.requests.size(); ++channel.started)
-      results_[channel.requests[channel.started]] = fail(Errc::interrupted, "the time is over");
-    return;
+  while (channel.started != channel.requests.size()) {
+    if (until_ != kNever && session_->now() >= until_) {
+      open_ -= channel.requests.size() - channel.started;
+      for (; channel.started < channel.requests.size(); ++channel.started)
+        results_[channel.requests[channel.started]] = fail(Errc::interrupted, "the time is over");
+      return;
+    }
+    channel.current = channel.requests[channel.started++];
+    channel.tries = 0;
+    if (!answer_for(channel)) return ask(channel, requests_[channel.current].transfer);
   }
-  channel.current = channel.requests[channel.started++];
-  channel.tries = 0;
-  ask(channel, requests_[channel.current].transfer);
+}
+
+/// True where the request would raise an access alarm: it is not sent, and its result is the refusal.
+bool TransferRun::answer_for(Lane& channel) {
+  const auto& request = requests_[channel.current];
+  auto refusal = request.despite_alarm ? std::nullopt : refusal_of(*session_, request.node, request.object);
+  if (!refusal) return false;
+  results_[channel.current] = fail(std::move(*refusal));
+  if (request.ended != nullptr) *request.ended = session_->now();
+  --open_;
+  if (request.data) skip_rest(channel, results_[channel.current].error(), false);
+  return true;
 }
 
 void TransferRun::ask(Lane& channel, canopen::Transfer transfer) {

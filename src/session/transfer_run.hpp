@@ -33,6 +33,7 @@ class TransferRun {
   bool advance(Lane& channel);
   void ask(Lane& channel, canopen::Transfer transfer);
   void start(Lane& channel);
+  bool answer_for(Lane& channel);
   void finish(Lane& channel, Result<Bytes> result);
   void tell(const Lane& channel, TimePoint ended) const;
   void skip_rest(Lane& channel, const Error& reason, bool reads_too);

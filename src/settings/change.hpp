@@ -44,7 +44,7 @@ Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive
 Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes);
 
 /// The frames of these changes, in the order they would be sent; on EtherCAT the values.
-report::Value planned_frames(const show::Desk& desk, std::span<const Change> changes);
+report::Value planned_frames(show::Desk& desk, std::span<const Change> changes);
 
 /// What is to be done beside writing.
 struct WriteOptions {

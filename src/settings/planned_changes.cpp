@@ -16,17 +16,19 @@ void add_writes(std::span<const Change> changes, session::Rehearsal& rehearsal) 
 
 }  // namespace
 
-Value planned_frames(const show::Desk& desk, std::span<const Change> changes) {
+Value planned_frames(show::Desk& desk, std::span<const Change> changes) {
   session::Rehearsal rehearsal;
   add_writes(changes, rehearsal);
   if (!show::is_sent_as_frames(desk)) return show::planned_messages(desk, rehearsal.messages());
   report::Table table;
   table.columns = {{"node"}, {"object"}, {"name"}, {"when", "", report::Show::json}, {"frame"}};
-  for (std::size_t i = 0; i < changes.size(); ++i)
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (!show::would_be_sent(desk, rehearsal.messages()[i])) continue;
     table.rows.push_back(
         {changes[i].node, to_string(changes[i].target.address),
          report::text_or_null(desk.chinese ? changes[i].target.label_zh() : changes[i].target.label()),
          Value(), show::frame_text(rehearsal.messages()[i])});
+  }
   return table;
 }
 

@@ -74,7 +74,8 @@ std::string text_of(const session::Asked& asked) {
 
 }  // namespace
 
-Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<const std::uint8_t> nodes) {
+Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<const std::uint8_t> nodes,
+                                                         const session::BeforeDetails& before_details) {
   auto& session = *desk.session;
   if (const auto possible = session::check_own_bitrate(session.url(), "scan --all-bitrates"); !possible)
     return fail(possible.error());
@@ -91,8 +92,9 @@ Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<c
                 "`sync stop` first");
   if (const auto silent = hold_silence(desk, **link); !silent) return fail(silent.error());
   if (const auto agreed = desk.confirm(asking_question(name, *now)); !agreed) return fail(agreed.error());
-  auto done = session::scan_bitrates(session, **link, nodes, session::usual_bitrates(),
-                                     [&](const session::Asked& asked) { desk.tell(text_of(asked)); });
+  auto done = session::scan_bitrates(
+      session, **link, nodes, session::usual_bitrates(),
+      [&](const session::Asked& asked) { desk.tell(text_of(asked)); }, before_details);
   if (!done) return fail(done.error());
   if (done->bitrate && done->bitrate != now->bitrate) tell_bitrate(desk, *now, *done->bitrate);
   if (!done->bitrate)

@@ -157,4 +157,13 @@ std::string change_of(const session::Identity& before, const session::Identity& 
   return as_kept(before) != as_kept(now) ? "its name (1008h)" : std::string();
 }
 
+session::BeforeDetails warn_of_details(const Desk& desk, std::span<const drive::Family> families) {
+  if (desk.profile != nullptr && !desk.profile->is_generic()) return {};  // The user named it.
+  return [&desk, families](std::span<const session::Identity> found) {
+    const auto& tell = desk.session->options().tell;
+    const auto line = session::warning_of_details(found, families);
+    if (tell && !line.empty()) tell(line);
+  };
+}
+
 }  // namespace servoctl::show

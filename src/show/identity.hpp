@@ -48,4 +48,8 @@ session::Identity lasting(const session::Identity& identity);
 /// is the same one, as far as it tells.
 std::string change_of(const session::Identity& before, const session::Identity& now);
 
+/// For session::scan(): says which drives are asked for more than every drive has. Empty if the user named
+/// the family.
+session::BeforeDetails warn_of_details(const Desk& desk, std::span<const drive::Family> families);
+
 }  // namespace servoctl::show

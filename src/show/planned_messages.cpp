@@ -7,6 +7,7 @@
 #include "drive/naming.hpp"
 #include "session/can_network.hpp"
 #include "session/modbus_network.hpp"
+#include "session/wary.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -51,11 +52,12 @@ report::List ring_row(const Desk& desk, const session::PlannedMessage& message) 
   return row;
 }
 
-report::Value planned_on_ring(const Desk& desk, std::span<const session::PlannedMessage> messages) {
+report::Value planned_on_ring(Desk& desk, std::span<const session::PlannedMessage> messages) {
   report::Table table;
   table.columns = {{"node"}, {"object"}, {"name"}, {"when"}, {"value"}};
   table.json_only = messages.empty();  // Notices and errors say why.
-  for (const auto& message : messages) table.rows.push_back(ring_row(desk, message));
+  for (const auto& message : messages)
+    if (would_be_sent(desk, message)) table.rows.push_back(ring_row(desk, message));
   return table;
 }
 
@@ -91,15 +93,25 @@ bool is_sent_as_frames(const Desk& desk) {
   return desk.session == nullptr || (!desk.session->network().is_ring() && desk.session->modbus() == nullptr);
 }
 
-report::Value planned_messages(const Desk& desk, std::span<const session::PlannedMessage> messages) {
+bool would_be_sent(Desk& desk, const session::PlannedMessage& message) {
+  if (!message.write || desk.session == nullptr) return true;
+  auto refusal = session::refusal_of(*desk.session, message.node, message.write->object);
+  if (!refusal) return true;
+  desk.errors.push_back(*std::move(refusal));
+  return false;
+}
+
+report::Value planned_messages(Desk& desk, std::span<const session::PlannedMessage> messages) {
   if (desk.session != nullptr && desk.session->modbus() != nullptr) return planned_on_line(desk, messages);
   if (!is_sent_as_frames(desk)) return planned_on_ring(desk, messages);
   report::Table table;
   table.columns = {{"node"}, {"object"}, {"name"}, {"when"}, {"frame"}};
   table.json_only = messages.empty();  // Notices and errors say why.
   for (const auto& message : messages)
-    table.rows.push_back({message.node, object_text(message), report::text_or_null(name_text(desk, message)),
-                          report::text_or_null(message.when), frame_text(message)});
+    if (would_be_sent(desk, message))
+      table.rows.push_back({message.node, object_text(message),
+                            report::text_or_null(name_text(desk, message)),
+                            report::text_or_null(message.when), frame_text(message)});
   return table;
 }
 

@@ -60,6 +60,8 @@ void DriveModel::raise_access_alarm(ObjectAddress object, std::uint32_t code) {
     panel = rules.length_alarm;
   if (code == abort::kTooHigh || code == abort::kTooLow || code == abort::kRange) panel = rules.range_alarm;
   if (code == abort::kReadOnly) panel = rules.access_alarm;
+  if (code == abort::kNoObject) panel = rules.object_alarm;
+  if (code == abort::kNoSubIndex) panel = rules.sub_index_alarm;
   if (code == abort::kDeviceState && is_pdo_mapping(object.index)) panel = rules.mapping_alarm;
   (void)raise_alarm(panel);
 }

@@ -12,9 +12,12 @@ namespace servoctl::sim {
 namespace abort = canopen::sdo_abort;
 
 std::uint32_t DriveModel::read(ObjectAddress object, Bytes& out) {
-  if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
-  if (misbehaviour_.unreadable.contains(object.index)) return abort::kWriteOnly;
-  if (const auto code = values_.check_read(object); code != 0) return code;
+  const bool is_missing = misbehaviour_.missing.contains(object.index);
+  if (!is_missing && misbehaviour_.unreadable.contains(object.index)) return abort::kWriteOnly;
+  if (const auto code = is_missing ? abort::kNoObject : values_.check_read(object); code != 0) {
+    if (code == abort::kNoObject || code == abort::kNoSubIndex) raise_access_alarm(object, code);
+    return code;
+  }
   move_axis();
   if (object == objects::kStatusword && misbehaviour_.statusword) {
     out = store_le(*misbehaviour_.statusword, 2);
@@ -71,14 +74,17 @@ bool DriveModel::is_locked(ObjectAddress object) const {
 }
 
 std::uint32_t DriveModel::check_writable(ObjectAddress object) {
-  if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
-  const auto code = values_.check_writable(object);
+  const bool is_missing = misbehaviour_.missing.contains(object.index);
+  const auto code = is_missing ? abort::kNoObject : values_.check_writable(object);
   if (code != 0) raise_access_alarm(object, code);
   return code;
 }
 
 std::uint32_t DriveModel::write(ObjectAddress object, ByteSpan data) {
-  if (misbehaviour_.missing.contains(object.index)) return abort::kNoObject;
+  if (misbehaviour_.missing.contains(object.index)) {
+    raise_access_alarm(object, abort::kNoObject);
+    return abort::kNoObject;
+  }
   if (misbehaviour_.refused.contains(object.index)) return abort::kDeviceState;
   if (misbehaviour_.feigned.contains(object.index)) return 0;
   if (object == objects::kErrorHistory && data.size() == 1 && data[0] != 0) return abort::kRange;

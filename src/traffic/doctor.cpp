@@ -10,7 +10,6 @@
 #include "can/serial_port.hpp"
 #include "can/socketcan.hpp"
 #include "canopen/cob_id.hpp"
-#include "canopen/node_list.hpp"
 #include "session/can_network.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/open_network.hpp"
@@ -68,25 +67,24 @@ Result<void> hear_rest(can::Bus& bus, BusPicture& picture) {
 
 /// Asks all nodes for 1000h; who answers, and who answers twice.
 Result<std::vector<Finding>> ask_all(session::Session& session) {
-  const auto nodes = canopen::every_node_id();
-  const auto found = session::scan(session, nodes);
+  const auto found = session::nodes_present(session);
   if (!found && found.error().code == Errc::interrupted) return fail(found.error());
-  if (!found)
+  if (!found && found.error().code != Errc::timeout)
     return std::vector<Finding>{{Level::fault, "cannot-send", found.error().message,
                                  "the question did not get through", found.error().hint}};
-  if (found->empty())
+  if (!found)
     return std::vector<Finding>{
         {Level::fault, "no-node", "no node answered a read of 1000h",
          "no power, no cable, another bitrate, or all of them are stopped (NMT)",
          "`nmt preop -n all` if they may be stopped; else check power and cable, and `bus detect` for the bitrate"}};
   std::string list;
-  for (const auto& identity : *found) append(list, fmt::format("{}", identity.node));
+  for (const auto node : *found) append(list, fmt::format("{}", node));
   std::vector<Finding> out{{Level::ok, "nodes", fmt::format("answered: node {}", list), {}, {}}};
   auto* can = session.can();
   if (can == nullptr) return out;
-  for (const auto& identity : *found)
-    if (const auto& noticed = can->duplicates().noticed(identity.node); !noticed.empty())
-      out.push_back(two_nodes(identity.node, noticed));
+  for (const auto node : *found)
+    if (const auto& noticed = can->duplicates().noticed(node); !noticed.empty())
+      out.push_back(two_nodes(node, noticed));
   return out;
 }
 

@@ -69,7 +69,8 @@ void NodeSource::check_identity() {
   const auto now = session::identify(*desk_->session, nodes, desk_->profile->rules).front();
   if (!now) return;
   auto change = session::different_number(*identity_, *now);
-  if (change.empty() && now->device_name != identity_->device_name) change = "its name (1008h)";
+  const bool both_named = !now->device_name.empty() && !identity_->device_name.empty();
+  if (change.empty() && both_named && now->device_name != identity_->device_name) change = "its name (1008h)";
   if (change.empty()) return;
   tell_now(*desk_,
            fmt::format("node {} is a different drive now ({} differs): end this command and start it again",

@@ -8,6 +8,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -217,6 +218,7 @@ class Fleet {
     auto bus = std::make_unique<FleetBus>(*line.wire, line.drives, trouble);
     line.bus = bus.get();
     session::Options options;
+    options.drive_folders = [] { return std::span<const fs::path>(drive_data()); };
     options.timeout = 50ms;  // A simulated drive answers soon or never.
     options.cancelled = [this] {
       return std::any_of(lines_.begin(), lines_.end(),

@@ -190,7 +190,8 @@ class Scripted(Listening):
             pass
 
 
-READ = ["read", "0x1017", "-n", "4", "--type", "u16"]
+# The family is named: 1000h and 1018h are not asked first.
+READ = ["read", "0x1017", "-n", "4", "--type", "u16", "-d", "gsd600"]
 CASES = [
     ("CANopenNode", "6AM=\r\n", 0, "1000"),
     ("CANopenNode refuses", "ERROR:0x06020000 #Object does not exist.\r\n", 5, "object does not exist"),

@@ -1,137 +1,18 @@
 // --read-only and --dry-run: every command on every family, and every frame that it sends.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <sstream>
+#include <cstdint>
+#include <string>
 
-#include "can/trace.hpp"
-#include "cli/batch/batch_command.hpp"
+#include "can/frame.hpp"
 #include "command/command.hpp"
 #include "command/registry.hpp"
-#include "recording_console.hpp"
-#include "tests/source_dir.hpp"
+#include "sample_lines.hpp"
 
 namespace servoctl::cli {
 namespace {
 
-namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
-
 constexpr std::uint8_t kDrives = 3;  ///< Nodes 1 and 2, and 3 for `sim`.
-
-/// One line of every command; PARAM, FAULTS … stand for what differs from family to family.
-const std::map<std::string, std::string> kSamples{
-    {"scan", "scan"},
-    {"bus status", "bus status"},
-    {"bus up", "bus up no-such-can --bitrate 500k -y"},
-    {"bus down", "bus down no-such-can -y"},
-    {"bus detect", "bus detect no-such-can -y"},
-    {"doctor", "doctor no-such-can --active"},
-    {"info", "info -n 1"},
-    {"status", "status -n 1,2"},
-    {"read", "read 0x6041 0x1018:1 -n 1"},
-    {"write", "write 0x6040 15 -n 1 -y"},
-    {"explain", "explain statusword"},
-    {"objects", "objects"},
-    {"param list", "param list"},
-    {"param get", "param get PARAM -n 1"},
-    {"param set", "param set PARAM=2 --keep -n 1 -y"},
-    {"param search", "param search speed"},
-    {"param explain", "param explain PARAM"},
-    {"backup", "backup DIR/new.json -n 1"},
-    {"diff", "diff DIR/backup.json node:2"},
-    {"verify", "verify DIR/backup.json -n 1"},
-    {"restore", "restore DIR/backup.json -n 1 -y"},
-    {"clone", "clone --from 1 --to 2 -y"},
-    {"address", "address 9 -n 1 -y"},
-    {"lss scan", "lss scan --assign 9 -y"},
-    {"lss inquire", "lss inquire --only"},
-    {"lss select", "lss select --only"},
-    {"lss set-node", "lss set-node 9 --only -y"},
-    {"lss set-bitrate", "lss set-bitrate 500k --only --activate 1s -y"},
-    {"lss store", "lss store --only -y"},
-    {"store", "store -n 1 -y"},
-    {"defaults", "defaults -n 1 -y"},
-    {"fault show", "fault show -n 1"},
-    {"fault list", "fault list"},
-    {"fault reset", "fault reset -n 1 -y"},
-    {"fault clear-history", "fault clear-history -n 1 -y"},
-    {"enable", "enable -n 1 -y"},
-    {"disable", "disable -n 1,2"},
-    {"quick-stop", "quick-stop -n 1,2"},
-    {"stop", "stop"},
-    {"mode", "mode 1 -n 1"},
-    {"jog", "jog 30rpm --for 1s --turn 10000 -n 1 -y"},
-    {"move", "move 90deg --relative --speed 30rpm --turn 10000 -n 1 -y"},
-    {"home", "home 35 --turn 10000 -n 1 -y"},
-    {"units show", "units show -n 1"},
-    {"units learn", "units learn -n 1 -y"},
-    {"units forget", "units forget -n 1"},
-    {"torque", "torque 5% --for 1s --limit 30rpm --turn 10000 -n 1 -y"},
-    {"heartbeat set", "heartbeat set 100ms -n 1 --keep -y"},
-    {"heartbeat consume", "heartbeat consume 2=300ms -n 1 -y"},
-    {"heartbeat show", "heartbeat show -n 1,2"},
-    {"watchdog", "watchdog -n 1,2"},
-    {"nmt start", "nmt start -n 1 -y"},
-    {"nmt stop", "nmt stop -n 1 -y"},
-    {"nmt preop", "nmt preop -n 1 -y"},
-    {"nmt reset", "nmt reset -n 1 -y"},
-    {"nmt reset-comm", "nmt reset-comm -n 1 -y"},
-    {"nmt watch", "nmt watch --guard 100ms --for 1s -n 1"},
-    {"state init", "state init -n 1 -y"},
-    {"state preop", "state preop -n 1 -y"},
-    {"state safeop", "state safeop -n 1 -y"},
-    {"state op", "state op -n 1 -y"},
-    {"pdo show", "pdo show -n 1"},
-    {"pdo map", "pdo map TPDO1 0x6041 -n 1 -y"},
-    {"pdo enable", "pdo enable TPDO2 -n 1 -y"},
-    {"pdo disable", "pdo disable TPDO1 -n 1 -y"},
-    {"pdo clear", "pdo clear TPDO1 -n 1 -y"},
-    {"pdo preset", "pdo preset pv -n 1 -y"},
-    {"pdo apply", "pdo apply DIR/pdos.toml -n 1 -y"},
-    {"pdo save", "pdo save DIR/saved.toml -n 1"},
-    {"pdo watch", "pdo watch --for 1s -n 1"},
-    {"pdo send", "pdo send RPDO1 15 -n 1 -y"},
-    {"test comm", "test comm -n 1"},
-    {"test io", "test io --for 1s -n 1"},
-    {"test jog", "test jog 30rpm --turn 10000 -n 1 -y"},
-    {"test home", "test home --turn 10000 -n 1 -y"},
-    {"test all", "test all 30rpm --turn 10000 -n 1 -y"},
-    {"report", "report DIR/report.json -n 1"},
-    {"witness", "witness DIR/witness.json -n 1"},
-    {"sync once", "sync once -y"},
-    {"sync start", "sync start --for 1s -y"},
-    {"sync stop", "sync stop"},
-    {"watch", "watch 0x6041 --for 1s -n 1"},
-    {"scope", "scope 0x6041 0x6064 --for 1s -n 1"},
-    {"monitor", "monitor --for 1s"},
-    {"decode", "decode DIR/recording.log"},
-    {"replay", "replay DIR/recording.log --speed 100 -n 1 -y"},
-    {"drives", "drives"},
-    {"cabinet check", "cabinet check tests/cli/data/cabinet.toml"},
-    {"cabinet init", "cabinet init DIR/made.toml"},
-    {"cabinet show", "cabinet show --cabinet DIR/cabinet.toml"},
-    {"cabinet plan", "cabinet plan --cabinet DIR/cabinet.toml"},
-    {"cabinet apply", "cabinet apply --cabinet DIR/cabinet.toml -y"},
-    {"cabinet swap", "cabinet swap a1 --from 9 --cabinet DIR/cabinet.toml -y"},
-    {"cabinet backup", "cabinet backup --cabinet DIR/cabinet.toml"},
-    {"cabinet diff", "cabinet diff DIR/cabinet.toml DIR/cabinet.toml"},
-    {"eds check", "eds check EDS"},
-    {"run", "run DIR/lines.servoctl"},
-    {"sim", "sim FAMILY@3"},
-    {"gateway", "gateway --listen DIR/gateway --allow write -y"},
-    {"help", "help jog"},
-    {"man", "man"},
-    {"completion", "completion bash"},
-};
-
-void replace(std::string& text, std::string_view from, std::string_view to) {
-  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-}
 
 /// Whether it is a request of LSS that asks, or says who is asked (CiA 305).
 bool looks_by_lss(const can::Frame& frame) {
@@ -156,83 +37,26 @@ bool is_harmless(const can::Frame& frame) {
 
 class Harmless : public testing::TestWithParam<std::string> {
  protected:
-  Harmless() {
-    fs::create_directories(dir_);
-    std::ofstream(dir_ / "recording.log") << "(0000000001.000000) can0 601#2B4060000F000000\n"
-                                             "(0000000001.001000) can0 581#6040600000000000\n"
-                                             "(0000000001.002000) can0 000#0101\n"
-                                             "(0000000001.003000) can0 201#0F00\n"
-                                             "(0000000001.004000) can0 080#\n";
-    std::ofstream(dir_ / "pdos.toml") << "[TPDO1]\nmap = [\"0x6041\"]\n";
-    std::ofstream(dir_ / "lines.servoctl") << "read 0x6041 -n 1\nwrite 0x6040 15 -n 1 -y\n";
-    std::ofstream(dir_ / "cabinet.toml")
-        << "[bus.main]\nurl = \"sim:" << GetParam() << "@1," << GetParam() << "@2\"\n[axis.\"a{1-2}\"]\n"
-        << "node = \"1-2\"\nfamily = \"" << GetParam() << "\"\nparameters = { \"0x6083\" = 1234 }\n";
-    EXPECT_EQ(perform("backup DIR/backup.json -n 1", {}), 0) << console.err_text;
-  }
-  ~Harmless() override { fs::remove_all(dir_); }
-
-  /// The exit code; frames are those that were on the bus.
-  int perform(std::string line, const std::string& option) {
-    const auto family = GetParam();
-    const std::map<std::string, std::string> parameters{
-        {"gsd600", "Pn0214"}, {"da200", "P0.03"}, {"sv2", "PA-05"}, {"ts", "Fn_33"}};
-    const auto parameter = parameters.find(family);
-    replace(line, "PARAM", parameter == parameters.end() ? "none" : parameter->second);
-    replace(line, "DIR", dir_.string());
-    replace(line, "FAMILY", family);
-    for (const auto& entry : fs::recursive_directory_iterator(fs::path(source_dir()) / "eds"))
-      if (entry.path().filename() == family + ".eds") replace(line, "EDS", entry.path().string());
-    Words words;
-    std::istringstream in(line);
-    for (std::string word; in >> word;) words.push_back(word);
-    if (!option.empty()) words.push_back(option);
-    console.err_text.clear();
-    int questions_left = 3'000;
-    Shell::Options options;
-    options.drive_folders = {fs::path(source_dir()) / "eds"};
-    options.state_folder = dir_ / "state";
-    options.clock = sim::SimBus::Clock::virtual_time;
-    options.defaults.bus = "sim:" + family + "@1," + family + "@2";
-    options.defaults.drive = family;
-    options.defaults.trace = dir_ / "trace.log";
-    options.cancelled = [&] { return words.front() == "sim" && questions_left-- <= 0; };
-    fs::remove(dir_ / "trace.log");
-    int code = 0;
-    {
-      Shell shell(console, std::move(options));
-      code = is_batch(words) ? run_batch(shell, words, {}) : shell.run(words);
-    }
-    frames.clear();
-    std::ifstream trace(dir_ / "trace.log");
-    for (std::string text; std::getline(trace, text);)
-      if (const auto logged = can::parse_log_line(text)) frames.push_back(logged->frame);
-    return code;
-  }
-
   void expect_harmless(const std::string& option, bool each_is_understood) {
     std::size_t in_all = 0;
     for (const auto* command : command::registry()) {
-      const auto sample = kSamples.find(std::string(command->path));
-      ASSERT_NE(sample, kSamples.end()) << "give '" << command->path << "' a sample line";
-      const auto code = perform(sample->second, option);
+      const auto sample = kSampleLines.find(std::string(command->path));
+      ASSERT_NE(sample, kSampleLines.end()) << "give '" << command->path << "' a sample line";
+      const auto code = lines.perform(sample->second, option);
       // Not every family has every object; one has all. Nothing runs that `sync stop` could end, no drive is
       // put on a simulated bus, and this one is not EtherCAT.
       const bool elsewhere = includes(command->needs, command::Needs::ethercat);
       if (each_is_understood && !elsewhere && sample->first != "sync stop" && sample->first != "sim") {
-        EXPECT_NE(code, exit_code(Errc::usage)) << sample->second << "\n" << console.err_text;
+        EXPECT_NE(code, exit_code(Errc::usage)) << sample->second << "\n" << lines.console.err_text;
       }
-      for (const auto& frame : frames)
+      for (const auto& frame : lines.frames)
         EXPECT_TRUE(is_harmless(frame)) << sample->second << " " << option << ": " << can::to_string(frame);
-      in_all += frames.size();
+      in_all += lines.frames.size();
     }
     EXPECT_GT(in_all, 500U) << "most of them read something";
   }
 
-  fs::path dir_ =
-      fs::temp_directory_path() / ("servoctl-harmless-" + std::to_string(::getpid()) + "-" + GetParam());
-  RecordingConsole console;
-  std::vector<can::Frame> frames;
+  SampleLines lines{GetParam()};
 };
 
 TEST_P(Harmless, ReadOnlySendsNothingButReadingRequests) {

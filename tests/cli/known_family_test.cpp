@@ -86,6 +86,17 @@ TEST_F(KnownFamily, AFamilyThatTheDriveContradictsIsToldAndNotRemembered) {
   EXPECT_TRUE(says("a guess, not proof")) << all();
 }
 
+/// A da200 takes a read of 1008h, which it does not have, as an alarm.
+TEST_F(KnownFamily, RememberingADriveRaisesNoAccessAlarm) {
+  options.defaults.trace = folder / "trace.log";
+  EXPECT_EQ(run("param get P0.03 -n 2 -d da200"), 0) << all();
+  EXPECT_EQ(files(), 1U) << all();
+  std::stringstream frames;
+  frames << std::ifstream(folder / "trace.log").rdbuf();
+  EXPECT_NE(frames.str().find("582#"), std::string::npos) << frames.str();
+  EXPECT_EQ(frames.str().find("082#"), std::string::npos) << frames.str();
+}
+
 TEST_F(KnownFamily, WhatWasSaidHoldsForTheDriveAndIsTold) {
   EXPECT_EQ(run("param get Pn0202 -n 1 -d gsd600"), 0) << all();
   EXPECT_FALSE(says("notice")) << all();

@@ -44,11 +44,11 @@ def on_a_bus(bus, family, kind, words=("status",)):
 
 
 def what_is_read_and_written():
-    out, told, code = run("read", "0x1018:1", *CAN, "1", "-v")
-    plain = run("read", "0x1018:1", *CAN, "1")
+    out, told, code = run("read", "0x1001", *CAN, "1", "-v")
+    plain = run("read", "0x1001", *CAN, "1")
     check("the result is the same", (out, code) == (plain[0], plain[2]))
     check("without -v nothing is told", plain[1] == "")
-    check("each transfer is told once", told.count("object 0x1018:1: read in") == 1)
+    check("each transfer is told once", told.count("object 0x1001:0: read in") == 1)
     is_told("a name and a value", r"^detail: node 1, object 0x6041:0 \(Statusword\): read in \d+\.\d ms: 0x0270 \(bytes: 70 02\)$",
             run("read", "statusword", *CAN, "1", "-d", "gsd600", "-v")[1])
     is_told("a label", r"\(Modes of operation display\): read in .* ms: 1 Profile position \(pp\) \(bytes: 01\)$",
@@ -134,17 +134,17 @@ def in_other_forms():
 def with_quiet():
     out, told, code = run("read", "0x1000", *CAN, "1", "-q", "-v")
     check(f"-q and -v are refused ({code}): {told}", code == 2 and "contradict" in told and out == "")
-    lines = "read 0x1018:1\nread 0x1018:2 -v\nread 0x1018:3\n"
+    lines = "read 0x1001\nread 0x1017 -v\nread 0x1018:3\n"
     told = run(*CAN, "1", "-q", given=lines)[1]
     check(f"-v of a line holds for that line: {told}",
-          "0x1018:2" in told and "0x1018:1" not in told and "0x1018:3" not in told)
-    told = run(*CAN, "1", "-v", given="read 0x1018:1\nread 0x1018:2 -q\nread 0x1018:3\n")[1]
+          "0x1017" in told and "0x1001" not in told and "0x1018:3" not in told)
+    told = run(*CAN, "1", "-v", given="read 0x1001\nread 0x1017 -q\nread 0x1018:3\n")[1]
     check(f"-q of a line holds for that line: {told}",
-          "0x1018:2" not in told and "0x1018:1" in told and "0x1018:3" in told)
+          "0x1017" not in told and "0x1001" in told and "0x1018:3" in told)
     with open(os.path.join(home, "lines"), "w", encoding="utf-8") as file:
-        file.write("read 0x1018:1\nread 0x1018:2\n")
+        file.write("read 0x1001\nread 0x1017\n")
     told = run("run", "lines", "-v", *CAN, "1")[1]
-    check(f"-v of `run` holds for its lines: {told}", "0x1018:1: read in" in told and "0x1018:2: read in" in told)
+    check(f"-v of `run` holds for its lines: {told}", "0x1001:0: read in" in told and "0x1017:0: read in" in told)
 
 
 def at_the_prompt():

@@ -8,10 +8,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 #include <fstream>
+#include <span>
 
 #include "drive/drive_settings.hpp"
 #include "session/can_network.hpp"
 #include "session/pdo_setup.hpp"
+#include "session/wary.hpp"
 #include "tests/session/troubled_bus.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
@@ -56,7 +58,10 @@ class World {
   bool run(std::string_view command, const Arguments& arguments, const Trouble& trouble = {}) {
     auto bus = std::make_unique<TroubledBus>(bus_, drive_, trouble, 1);
     const auto* counted = bus.get();
-    session::Session session(std::move(bus), url, {});
+    session::Options network;
+    network.drive_folders = [] { return std::span<const fs::path>(kFolders); };
+    session::Session session(std::move(bus), url, std::move(network));
+    session::be_wary_of_family(session, 1, profile_);  // As the program does before each command.
     Context context;
     context.session = &session;
     context.profile = &profile_;

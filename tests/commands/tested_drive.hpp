@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "command/command.hpp"
 #include "command/registry.hpp"
+#include "session/wary.hpp"
 #include "sim/cell.hpp"
 #include "tests/source_dir.hpp"
 
@@ -69,9 +71,12 @@ class TestedDrive : public testing::Test {
     profile_ = std::move(*profile);
     auto touched = std::make_unique<TouchedBus>(sim_bus);
     bus = touched.get();
-    session = std::make_unique<session::Session>(std::move(touched), "sim:" + spec, session::Options{});
+    session::Options network;
+    network.drive_folders = [] { return std::span<const std::filesystem::path>(kFolders); };
+    session = std::make_unique<session::Session>(std::move(touched), "sim:" + spec, std::move(network));
     ASSERT_TRUE(session->listen());
     (void)session->take_events();
+    session::be_wary_of_family(*session, 1, profile_);  // As the program does before each command.
     context.session = session.get();
     context.profile = &profile_;
     context.nodes = {1};

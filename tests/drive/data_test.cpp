@@ -183,7 +183,7 @@ TEST_P(DriveData, NamesRulesAfterParametersAndObjectsThatExist) {
     if (p.mirror) objects.push_back(*p.mirror);
   for (const auto& object : objects) EXPECT_NE(profile.dictionary.find(object), nullptr) << to_string(object);
   for (const auto& panel : {rules.fault.length_alarm, rules.fault.mapping_alarm, rules.fault.range_alarm,
-                            rules.fault.access_alarm})
+                            rules.fault.access_alarm, rules.fault.object_alarm, rules.fault.sub_index_alarm})
     EXPECT_TRUE(panel.empty() || std::any_of(profile.faults.begin(), profile.faults.end(),
                                              [&](const Fault& f) { return f.panel == panel; }))
         << panel;

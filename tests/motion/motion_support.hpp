@@ -7,12 +7,14 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "canopen/nmt.hpp"
 #include "drive/naming.hpp"
 #include "motion/motion_kinds.hpp"
 #include "session/can_network.hpp"
+#include "session/wary.hpp"
 #include "sim/cell.hpp"
 #include "tests/session/troubled_bus.hpp"
 #include "tests/source_dir.hpp"
@@ -102,9 +104,12 @@ class MotionBench {
   explicit MotionBench(std::string_view family, double turn = 0) {
     auto owned = std::make_unique<MotionBus>(std::string(family) + "@1");
     bus = owned.get();
-    session = std::make_unique<session::Session>(std::move(owned), "test", session::Options{});
+    session::Options network;
+    network.drive_folders = [] { return std::span<const std::filesystem::path>(kFolders); };
+    session = std::make_unique<session::Session>(std::move(owned), "test", std::move(network));
     EXPECT_TRUE(session->listen());
     (void)session->take_events();
+    session::be_wary_of_family(*session, 1, profile());  // As each command of the program does.
     if (turn > 0) options.turn = turn;
   }
 

@@ -51,8 +51,9 @@ struct Scanned {
   }
   Result<BitrateScan> run(std::vector<std::uint32_t> bitrates) {
     const std::vector<std::uint8_t> nodes{1, 2, 3};
-    return scan_bitrates(*session, link, nodes, bitrates, {});
+    return scan_bitrates(*session, link, nodes, bitrates, {}, before_details);
   }
+  BeforeDetails before_details;
   FakeLink link;
   std::unique_ptr<Session> session;
 };
@@ -68,6 +69,16 @@ TEST(BitrateScan, LeavesTheInterfaceWhereNodesAnswered) {
   EXPECT_EQ(done->asked[0].nodes, 0U);
   EXPECT_EQ(scanned.link.now.bitrate, 250'000U);
   EXPECT_TRUE(scanned.link.now.up);
+}
+
+TEST(BitrateScan, TellsWhoAnsweredBeforeItReadsMore) {
+  Scanned scanned(250'000);
+  std::vector<std::uint8_t> told;
+  scanned.before_details = [&](std::span<const Identity> found) {
+    for (const auto& identity : found) told.push_back(identity.node);
+  };
+  ASSERT_TRUE(scanned.run({500'000, 250'000}).has_value());
+  EXPECT_EQ(told, (std::vector<std::uint8_t>{3}));
 }
 
 TEST(BitrateScan, PutsTheInterfaceBackWhereNobodyAnswered) {

@@ -187,7 +187,11 @@ TEST(PdoChange, DoesNotStartADriveThatWasNotOperational) {
 }
 
 TEST(PdoChange, OfAnUnknownDriveIsTriedAgainPreOperational) {
-  PdoWorld world(PdoWorld::profile_of("da200"), 1);
+  // An unknown drive with these alarms would be in fault before it is written to.
+  auto drive = PdoWorld::profile_of("da200");
+  drive.rules.fault.object_alarm.clear();
+  drive.rules.fault.sub_index_alarm.clear();
+  PdoWorld world(std::move(drive), 1);
   const auto generic = PdoWorld::profile_of("cia402");
   for (const auto* known : {&generic, static_cast<const drive::Profile*>(nullptr)}) {
     world.client_profile = known;

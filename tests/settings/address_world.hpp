@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "drive/profile.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/session.hpp"
+#include "session/wary.hpp"
 #include "settings/address_change.hpp"
 #include "sim/sim_bus.hpp"
 #include "sim/sim_drive.hpp"
@@ -67,11 +70,17 @@ class AddressWorld {
     const auto key = std::to_string(drives.size() + 1);
     drives.push_back(std::make_unique<sim::SimDrive>(family, node, memory, key));
     bus.attach(*drives.back());
+    if (session) session::be_wary_of_family(*session, node, family);
     return *drives.back();
   }
   void restart_session(std::unique_ptr<can::Bus> other = nullptr) {
     if (!other) other = std::make_unique<HookedBus>(bus, hooks, sent);
-    session = std::make_unique<session::Session>(std::move(other), "can0", session::Options{});
+    session::Options network;
+    network.drive_folders = [] { return std::span<const std::filesystem::path>(kFolders); };
+    session = std::make_unique<session::Session>(std::move(other), "can0", std::move(network));
+    // As each command of the program does.
+    for (const auto& drive : drives)
+      session::be_wary_of_family(*session, static_cast<std::uint8_t>(drive->node()), drive->profile());
     desk = {};
     desk.session = session.get();
     desk.profile = &profile;

@@ -100,6 +100,20 @@ TEST_F(DriveModelTest, AWrongAccessIsAnAlarmWhereItsManualSaysSo) {  // 1088
   EXPECT_EQ(alarms.front().vendor[1], 0x05);
 }
 
+TEST_F(DriveModelTest, AnObjectThatOneDriveLacksIsAnAlarmToo) {  // 1084
+  for (const bool reads : {true, false}) {
+    build("da200");
+    model().misbehaviour().missing = {objects::kStatusword.index};
+    Bytes out;
+    EXPECT_EQ(reads ? model().read(objects::kStatusword, out) : write(objects::kStatusword, 0),
+              abort::kNoObject);
+    const auto alarms = told();
+    ASSERT_EQ(alarms.size(), 1U);
+    EXPECT_EQ(alarms.front().vendor[0], 0x1A);
+    EXPECT_EQ(alarms.front().vendor[1], 0x01);
+  }
+}
+
 TEST_F(DriveModelTest, MisbehavesAsItIsToldWithoutAWire) {
   build("cia402");
   Bytes out;

@@ -41,6 +41,27 @@ TEST_F(FamilyTest, Da200AlarmsWhatMayNotBeWritten) {
   EXPECT_EQ(emergency.substr(10, 4), "1A05");  // Er26-5
 }
 
+TEST_F(FamilyTest, Da200AlarmsAccessToWhatItDoesNotHave) {  // 1084, 1085, 1163, 1164
+  struct Access {
+    std::string_view request;
+    std::string_view answer;
+    std::string_view alarm;
+  };
+  constexpr Access kAccesses[] = {
+      {"601#403F600000000000", "581#803F600000000206", "081#01FF811A01000000"},  // Er26-1
+      {"601#2B3F600001000000", "581#803F600000000206", "081#01FF811A01000000"},
+      {"601#4018100700000000", "581#8018100711000906", "081#01FF811A02000000"},  // Er26-2
+      {"601#2318100700000000", "581#8018100711000906", "081#01FF811A02000000"},
+  };
+  boot("da200@1");
+  for (const auto& access : kAccesses) {
+    emergency.clear();
+    EXPECT_EQ(sdo(access.request), access.answer);
+    EXPECT_EQ(emergency, access.alarm);
+    EXPECT_EQ(std::stoul(sdo("601#4041600000000000").substr(12, 2), nullptr, 16) & 0x08U, 0x08U) << "fault";
+  }
+}
+
 TEST_F(FamilyTest, Da200ChangesMappingOutsideOperationalOnly) {
   boot("da200@1");
   EXPECT_EQ(ask("601#2F00160000000000"), "581#6000160000000000");

@@ -1,0 +1,31 @@
+#include "drive/access_alarms.hpp"
+
+#include <algorithm>
+
+namespace servoctl::drive {
+namespace {
+
+/// Whether a numbering gives the object a parameter number although the parameter table may not list it.
+bool has_unlisted_number(const Rules& rules, ObjectAddress object) {
+  constexpr unsigned kRange = 0xF000;
+  return std::any_of(rules.numbering.begin(), rules.numbering.end(), [&](const Numbering& rule) {
+    return rule.unlisted && object.sub == rule.first_sub && (object.index & kRange) == (rule.index & kRange);
+  });
+}
+
+}  // namespace
+
+bool has_access_alarms(const Rules& rules) {
+  return !rules.fault.object_alarm.empty() || !rules.fault.sub_index_alarm.empty();
+}
+
+std::string_view access_alarm(const Profile& profile, ObjectAddress object) {
+  const auto& rules = profile.rules;
+  if (!has_access_alarms(rules) || profile.dictionary.find(object) != nullptr ||
+      has_unlisted_number(rules, object))
+    return {};
+  const bool has_index = profile.dictionary.object(object.index) != nullptr;
+  return has_index ? rules.fault.sub_index_alarm : rules.fault.object_alarm;
+}
+
+}  // namespace servoctl::drive

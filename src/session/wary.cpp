@@ -1,0 +1,92 @@
+#include "session/wary.hpp"
+
+#include <fmt/format.h>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "canopen/sdo_abort.hpp"
+#include "drive/access_alarms.hpp"
+#include "drive/shared_profile.hpp"
+#include "session/answer.hpp"
+#include "session/family_check.hpp"
+#include "session/option_scope.hpp"
+
+namespace servoctl::session {
+
+void consider_numbers(Session& session, const Identity& numbers) {
+  const auto& where = session.options().drive_folders;
+  std::shared_ptr<const drive::Profile> found;
+  if (where && !numbers.by_registers) {
+    const auto folders = where();
+    for (const auto& family : drive::find_families(folders)) {
+      const auto rules = drive::shared_rules(family);
+      if (!rules || !drive::has_access_alarms(**rules) || !agrees_in_numbers(numbers, **rules)) continue;
+      if (auto profile = drive::shared_profile(family.name, folders)) found = std::move(*profile);
+    }
+  }
+  session.be_wary(numbers.node, std::move(found), true);
+}
+
+void consider_numbers(Session& session, std::span<const std::uint8_t> nodes) {
+  std::vector<SdoRequest> requests;
+  for (const auto node : nodes)
+    if (!session.is_considered(node))
+      for (const auto object : kDecidingNumbers) requests.push_back({node, object, {}});
+  if (requests.empty() || !session.options().drive_folders) return;
+  const OptionScope once(session, &Options::retries, 0U);
+  const auto answers = session.transfer(requests);
+  for (std::size_t i = 0; i + kDecidingNumbers.size() <= answers.size(); i += kDecidingNumbers.size()) {
+    Identity numbers;
+    numbers.node = requests[i].node;
+    numbers.device_type = u32_in(answers[i]);
+    numbers.vendor_id = u32_in(answers[i + 1]);
+    numbers.product_code = u32_in(answers[i + 2]);
+    if (numbers.device_type || numbers.vendor_id || numbers.product_code) consider_numbers(session, numbers);
+  }
+}
+
+namespace {
+
+/// The user's own file says what this drive has, and may know more objects than the family's data; the alarms
+/// stay those of the family that the drive's numbers tell, if the file names none.
+void be_wary_by_file(Session& session, std::uint8_t node, const drive::Profile& profile) {
+  auto own = std::make_shared<drive::Profile>(profile);
+  auto& fault = own->rules.fault;
+  if (const auto* known = session.wary_of(node); known != nullptr && !drive::has_access_alarms(own->rules)) {
+    fault.object_alarm = known->rules.fault.object_alarm;
+    fault.sub_index_alarm = known->rules.fault.sub_index_alarm;
+  }
+  if (drive::has_access_alarms(own->rules)) session.be_wary(node, std::move(own), false);
+}
+
+}  // namespace
+
+void be_wary_of_family(Session& session, std::uint8_t node, const drive::Profile& profile) {
+  const auto& where = session.options().drive_folders;
+  if (profile.of_file && !profile.dictionary.empty()) return be_wary_by_file(session, node, profile);
+  if (!where || !drive::has_access_alarms(profile.rules)) return;
+  if (auto shared = drive::shared_profile(profile.family, where()))
+    session.be_wary(node, std::move(*shared), false);
+}
+
+std::string_view access_alarm(const Session& session, std::uint8_t node, ObjectAddress object) {
+  const auto* profile = session.wary_of(node);
+  return profile == nullptr ? std::string_view() : drive::access_alarm(*profile, object);
+}
+
+std::optional<Error> refusal_of(const Session& session, std::uint8_t node, ObjectAddress object) {
+  const auto alarm = access_alarm(session, node, object);
+  if (alarm.empty()) return std::nullopt;
+  const auto& profile = *session.wary_of(node);
+  auto error = drive_error(
+      Errc::sdo_abort, node, object,
+      fmt::format("not sent: the data of {} have no such object, and a request for it raises the alarm {}",
+                  profile.family, alarm),
+      fmt::format("`objects -d {}` lists the objects of this family", profile.family));
+  const bool has_index = profile.dictionary.object(object.index) != nullptr;
+  error.abort_code = has_index ? canopen::sdo_abort::kNoSubIndex : canopen::sdo_abort::kNoObject;
+  return error;
+}
+
+}  // namespace servoctl::session

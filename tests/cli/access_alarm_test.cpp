@@ -1,0 +1,128 @@
+// Drives that raise an alarm when they are asked for an object that they do not have ([fault] object_alarm
+// and sub_index_alarm): no command asks for one, with the family named or not.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "can/frame.hpp"
+#include "command/command.hpp"
+#include "command/registry.hpp"
+#include "sample_lines.hpp"
+
+namespace servoctl::cli {
+namespace {
+
+constexpr std::uint32_t kEmergency = 0x081;  ///< COB-ID of node 1 (CiA 301, 7.3.3).
+
+/// Er26-1 or Er26-2: an EMCY with the panel's numbers 26 and 1 or 2 in bytes 3 and 4 (da200 336-339,
+/// 1084-1085).
+bool tells_access_alarm(const can::Frame& frame) {
+  return !frame.remote && (frame.id == kEmergency || frame.id == kEmergency + 1) && frame.data[3] == 26 &&
+         (frame.data[4] == 1 || frame.data[4] == 2);
+}
+
+std::string access_alarms(const std::vector<can::Frame>& frames) {
+  std::string out;
+  std::string asked;
+  for (const auto& frame : frames) {
+    if (frame.id == 0x601 || frame.id == 0x602) asked = can::to_string(frame);
+    if (tells_access_alarm(frame)) out += asked + " -> " + can::to_string(frame) + "\n";
+  }
+  return out;
+}
+
+class AccessAlarm : public testing::Test {
+ protected:
+  std::string text() const { return lines.console.out_text + lines.console.err_text; }
+
+  SampleLines lines{"da200"};
+};
+
+TEST_F(AccessAlarm, NoCommandRaisesOne) {
+  std::size_t with_frames = 0;
+  for (const auto* command : command::registry()) {
+    const auto sample = kSampleLines.find(std::string(command->path));
+    ASSERT_NE(sample, kSampleLines.end()) << "give '" << command->path << "' a sample line";
+    for (const bool names_family : {true, false}) {
+      lines.forget_drives();
+      (void)lines.perform(sample->second, {}, names_family);
+      EXPECT_EQ(access_alarms(lines.frames), "") << sample->second << (names_family ? " -d da200" : "");
+      with_frames += lines.frames.empty() ? 0U : 1U;
+    }
+  }
+  EXPECT_GT(with_frames, 80U) << "most of them speak to the drive";
+}
+
+TEST_F(AccessAlarm, NoLongerFormOfACommandRaisesOne) {
+  for (const auto* line :
+       {"scan --long", "scan --all", "info -n all", "status -n all", "monitor --ask --for 1s",
+        "doctor --active", "nmt reset --wait -n 1 -y", "home 35 --turn 10000 -n 1 -y --verbose",
+        "home -n 1 -y", "jog 60rpm --for 200ms -n 1 -y", "backup DIR/all.json -n 1 --all", "read 0x1018 -n 1",
+        "param get -n 1", "read 0x603* -n 1 -d cia402", "watch 0x603F --for 100ms -n 1 -d cia402",
+        "read statusword -n 1 -d cia402", "pdo show -n all", "cabinet show"})
+    for (const bool names_family : {true, false}) {
+      lines.forget_drives();
+      (void)lines.perform(line, {}, names_family);
+      EXPECT_EQ(access_alarms(lines.frames), "") << line << (names_family ? " -d da200" : "");
+    }
+}
+
+TEST_F(AccessAlarm, ADryRunShowsNoWriteThatIsNotSent) {
+  EXPECT_EQ(lines.perform("write 0x603F 1 --type u16 -n 1 --dry-run"), 5) << text();
+  EXPECT_NE(text().find("not sent: the data of da200 have no such object"), std::string::npos) << text();
+  EXPECT_EQ(text().find("601#"), std::string::npos) << text();
+}
+
+TEST_F(AccessAlarm, AnObjectThatTheFamilyLacksIsReadAfterAQuestion) {
+  for (const bool names_family : {true, false}) {
+    EXPECT_EQ(lines.perform("read 0x603F -n 1", {}, names_family), 8);
+    EXPECT_NE(
+        text().find("Read 0x603F:0 of node 1? The data of da200 have no such object, and a request for it "
+                    "raises the alarm Er26-1."),
+        std::string::npos)
+        << text();
+    EXPECT_EQ(access_alarms(lines.frames), "");
+  }
+  EXPECT_EQ(lines.perform("read 0x1018:7 -n 1"), 8);
+  EXPECT_NE(text().find("Er26-2"), std::string::npos) << text();
+  EXPECT_EQ(lines.perform("read 0x603F -n 1 -y"), 5);
+  EXPECT_NE(access_alarms(lines.frames), "") << "the simulated drive raises it";
+  EXPECT_EQ(lines.perform("read 0x1018:7 -n 1 -y"), 5);
+  EXPECT_NE(access_alarms(lines.frames), "");
+}
+
+TEST_F(AccessAlarm, AWriteOfAnObjectThatTheFamilyLacksIsNotSent) {
+  EXPECT_NE(lines.perform("write 0x603F 1 --type u16 -n 1 -y"), 0);
+  EXPECT_NE(
+      text().find(
+          "not sent: the data of da200 have no such object, and a request for it raises the alarm Er26-1"),
+      std::string::npos)
+      << text();
+  EXPECT_EQ(access_alarms(lines.frames), "");
+}
+
+TEST_F(AccessAlarm, TheDriveIsInFaultAfterIt) {
+  EXPECT_EQ(lines.perform("read 0x6041 -n 1"), 0);
+  const auto before = lines.console.out_text;
+  lines.console.out_text.clear();
+  EXPECT_EQ(lines.perform("read 0x603F 0x6041 -n 1 -y"), 5);
+  // It reacts to the fault: bits 3 to 0 are set (CiA 402-2, statusword).
+  EXPECT_NE(lines.console.out_text.find("0x021F"), std::string::npos) << lines.console.out_text;
+  EXPECT_EQ(before.find("0x021F"), std::string::npos) << before;
+}
+
+TEST(AccessWarning, ScanTellsWhichDrivesItAsksForMore) {
+  for (const auto& [family, warns] :
+       {std::pair{"ts", true}, std::pair{"da200", false}, std::pair{"gsd600", false}}) {
+    SampleLines lines(family);
+    EXPECT_EQ(lines.perform("scan", {}, false), 0);
+    EXPECT_EQ(lines.console.err_text.find("fit no known family") != std::string::npos, warns)
+        << family << lines.console.err_text;
+  }
+}
+
+}  // namespace
+}  // namespace servoctl::cli
