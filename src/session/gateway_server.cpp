@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "drive/enabling_write.hpp"
+#include "session/answer.hpp"
+#include "session/wary.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -95,10 +97,51 @@ void GatewayServer::start_orders() {
 }
 
 void GatewayServer::start(int who, Client& client) {
-  auto& request = client.order->request;
-  if (lanes_.count(request.node) != 0) return;
-  auto channel = session_->lend_channel(request.node);
-  channel->set_timeout(client.timeout);
+  const auto node = client.order->request.node;
+  if (lanes_.count(node) != 0) return;
+  auto& lane = lanes_[node] = {session_->lend_channel(node), who, session_->now()};
+  lane.channel->set_timeout(client.timeout);
+  client.order->started = true;
+  served_last_ = who;
+  const bool decided =
+      session_->is_considered(node) || !session_->options().drive_folders || session_->modbus() != nullptr;
+  if (!decided) {
+    lane.numbers.emplace().node = node;
+    return ask_number(lane);
+  }
+  if (!begin(lane, *client.order)) lanes_.erase(node);
+}
+
+void GatewayServer::ask_number(Lane& lane) {
+  lane.channel->start_upload(kDecidingNumbers[lane.numbers_read], session_->now(),
+                             canopen::Transfer::automatic, 0);
+}
+
+/// False where the node did not answer: its client is told so, and nothing else is asked.
+bool GatewayServer::take_number(Lane& lane, const Result<Bytes>& result) {
+  if (!result && result.error().code == Errc::timeout) return false;
+  auto& numbers = *lane.numbers;
+  std::optional<std::uint32_t>* const places[] = {&numbers.device_type, &numbers.vendor_id,
+                                                  &numbers.product_code};
+  *places[lane.numbers_read] = u32_in(result);
+  if (++lane.numbers_read < kDecidingNumbers.size()) {
+    ask_number(lane);
+    return true;
+  }
+  consider_numbers(*session_, numbers);
+  lane.numbers.reset();
+  return true;
+}
+
+/// Sends the request of the client. False where it is answered without the drive.
+bool GatewayServer::begin(Lane& lane, Client::Order& order) {
+  const auto& request = order.request;
+  const auto who = lane.who;
+  if (const auto refusal = refusal_of(*session_, request.node, request.object)) {
+    session_->give_back(request.node, std::move(lane.channel));
+    finish(lane, fail(*refusal));
+    return false;
+  }
   if (request.data) {
     // Noted before it is sent: from then on no signal ends the process before the drive is let go.
     if (drive::is_enabling_write(request.object, *request.data) ||
@@ -106,23 +149,29 @@ void GatewayServer::start(int who, Client& client) {
       session_->energised().insert(request.node);
       energised_[request.node] = who;
     }
-    channel->start_download(request.object, *request.data, session_->now(), request.transfer);
+    lane.channel->start_download(request.object, *request.data, session_->now(), request.transfer);
   } else {
-    channel->start_upload(request.object, session_->now(), request.transfer, 0);
+    lane.channel->start_upload(request.object, session_->now(), request.transfer, 0);
   }
-  client.order->started = true;
-  served_last_ = who;
-  lanes_[request.node] = {std::move(channel), who, session_->now()};
+  lane.begun = session_->now();
+  return true;
 }
 
 Result<void> GatewayServer::serve_lane(std::uint8_t node, Lane& lane) {
-  if (const auto sent = lane.channel->on_time(session_->now()); !sent) return sent;
-  const auto result = lane.channel->take_result();
-  if (!result) return {};
-  session_->give_back(node, std::move(lane.channel));
-  lane.channel.reset();
-  tell(node, lane, *result);
-  finish(lane, *result);
+  while (lane.channel) {
+    if (const auto sent = lane.channel->on_time(session_->now()); !sent) return sent;
+    const auto result = lane.channel->take_result();
+    if (!result) return {};
+    const auto client = clients_.find(lane.who);
+    if (lane.numbers && client != clients_.end() && client->second.order && take_number(lane, *result)) {
+      if (!lane.numbers) begin(lane, *client->second.order);
+      continue;
+    }
+    session_->give_back(node, std::move(lane.channel));
+    lane.channel.reset();
+    if (!lane.numbers) tell(node, lane, *result);
+    finish(lane, *result);
+  }
   return {};
 }
 

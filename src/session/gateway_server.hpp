@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "gateway/answer.hpp"
 #include "gateway/request.hpp"
 #include "session/gateway_client.hpp"
+#include "session/identity.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
@@ -20,6 +22,9 @@ namespace servoctl::session {
 /// A gateway of CiA 309-3 (ASCII mapping) on the network of a session: bytes of clients go in, answers come
 /// out. The requests of one client are carried out one after the other, those of several at the same time
 /// where they concern different nodes. No I/O but on the network.
+///
+/// What raises an alarm on a drive that does not have the object (refusal_of()) is answered without the
+/// drive.
 ///
 /// A drive that a client enabled by its controlword, or by what `Options::energises` knows, is that client's:
 /// when it goes, `Options::stop` is called for it, and nothing else is begun meanwhile.
@@ -73,6 +78,10 @@ class GatewayServer {
     std::unique_ptr<ObjectChannel> channel;
     int who = 0;
     TimePoint begun{};
+    /// What decides whether the drive may be asked for every object, read before the first request of a
+    /// client: empty while the request itself is under way.
+    std::optional<Identity> numbers = {};
+    std::size_t numbers_read = 0;
   };
 
   void take_lines(Client& client);
@@ -85,6 +94,9 @@ class GatewayServer {
   Result<void> send_command(gateway::Service service, std::uint8_t node);
   void start_orders();
   void start(int who, Client& client);
+  bool begin(Lane& lane, Client::Order& order);
+  void ask_number(Lane& lane);
+  bool take_number(Lane& lane, const Result<Bytes>& result);
   Result<void> serve_lane(std::uint8_t node, Lane& lane);
   void tell(std::uint8_t node, const Lane& lane, const Result<Bytes>& result) const;
   void finish(const Lane& lane, const Result<Bytes>& result);

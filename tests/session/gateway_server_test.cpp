@@ -18,10 +18,10 @@ const std::vector<std::filesystem::path> kGatewayFolders{std::filesystem::path(s
 
 class GatewayServing : public testing::Test {
  protected:
-  void open(std::string_view spec, bool writes) {
+  void open(std::string_view spec, bool writes, Options network = {}) {
     auto bus = sim::open_sim(spec, kGatewayFolders, sim::SimBus::Clock::virtual_time);
     ASSERT_TRUE(bus) << bus.error().message;
-    session.emplace(std::move(*bus), "test", Options{});
+    session.emplace(std::move(*bus), "test", std::move(network));
     ASSERT_TRUE(session->listen());
     server.emplace(
         *session, GatewayServer::Options{
@@ -64,6 +64,17 @@ TEST_F(GatewayServing, ReadsByEveryTypeAndWithout) {
   EXPECT_EQ(ask("[2] 1 1 read 0x1000 0\n"), "[2] 92 01 02 00\r\n");
   EXPECT_EQ(ask("[3] 1 r 0x1000 0 x32\n"), "[3] 0x00020192\r\n");
   EXPECT_EQ(ask("[4] 1 r 4096 0 d\n"), "[4] kgECAA==\r\n");
+}
+
+TEST_F(GatewayServing, AClientRaisesNoAccessAlarmOnADrive) {
+  Options network;
+  network.drive_folders = [] { return std::span<const std::filesystem::path>(kGatewayFolders); };
+  open("da200@1", true, network);
+  EXPECT_TRUE(begins(ask("[1] 1 r 0x603F 0 u16\n"), "[1] ERROR:0x06020000 #"));
+  EXPECT_TRUE(begins(ask("[2] 1 r 0x1018 7 u32\n"), "[2] ERROR:0x06090011 #"));
+  EXPECT_TRUE(begins(ask("[3] 1 w 0x603F 0 u16 1\n"), "[3] ERROR:0x06020000 #"));
+  EXPECT_EQ(ask("[4] 1 r 0x6041 0 x16\n"), "[4] 0x0250\r\n") << "no fault";
+  EXPECT_TRUE(begins(ask("[5] 9 r 0x6041 0 x16\n"), "[5] ERROR:0x05040000 #")) << "nobody is there";
 }
 
 TEST_F(GatewayServing, ErrorsHaveTheCodesOfTheStandard) {
