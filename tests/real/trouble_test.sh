@@ -132,7 +132,7 @@ for _ in 1 2 3 4; do printf 'e1f\r' >/dev/can0.inject; sleep 0.1; done
 wait "$line"
 grep -q 'errors on the wire.*4 × form error' "$work/out" || fail "form errors are not shown by monitor"
 checks=$((checks + 1))
-"$servoctl" -b can0 read 0x1000 -n 77 --timeout 3s >"$work/out" 2>"$work/err" &
+"$servoctl" -b can0 read 0x1000 -n 77 -d gsd600 --timeout 3s >"$work/out" 2>"$work/err" &
 line=$!
 sleep 1
 for _ in 1 2 3 4; do printf 'e1f\r' >/dev/can0.inject; sleep 0.1; done
