@@ -207,7 +207,8 @@ void Shell::be_wary(Run& run, const command::Arguments& arguments) {
   const bool any = profile == nullptr || profile->is_generic() || profile->of_file;
   const bool is_decided = profile != nullptr && drive::has_access_alarms(profile->rules);
   // Another drive may be there since its boot-up, and what an earlier line named may be wrong.
-  if (is_decided)
+  // A stop goes out before anything is read.
+  if (is_decided || run.command->way_out)
     nodes.clear();
   else if (!any || !only_reads(*run.command, arguments, session))
     std::erase_if(nodes, [&](std::uint8_t node) { return session.wary_of(node) == nullptr; });

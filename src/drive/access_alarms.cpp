@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "drive/standard_objects.hpp"
+
 namespace servoctl::drive {
 namespace {
 
@@ -13,6 +15,15 @@ bool has_unlisted_number(const Rules& rules, ObjectAddress object) {
   });
 }
 
+/// What takes the power of a drive away, and shows that it is gone: an alarm costs less than a drive that
+/// stays energised, whatever a file of the user's own lists.
+bool stops_a_drive(ObjectAddress object) {
+  constexpr ObjectAddress kStopping[] = {objects::kControlword, objects::kStatusword,
+                                         objects::kModeOfOperation, objects::kModeDisplay,
+                                         objects::kTargetVelocity};
+  return std::ranges::find(kStopping, object) != std::end(kStopping);
+}
+
 }  // namespace
 
 bool has_access_alarms(const Rules& rules) {
@@ -21,7 +32,7 @@ bool has_access_alarms(const Rules& rules) {
 
 std::string_view access_alarm(const Profile& profile, ObjectAddress object) {
   const auto& rules = profile.rules;
-  if (!has_access_alarms(rules) || profile.dictionary.find(object) != nullptr ||
+  if (!has_access_alarms(rules) || stops_a_drive(object) || profile.dictionary.find(object) != nullptr ||
       has_unlisted_number(rules, object))
     return {};
   const bool has_index = profile.dictionary.object(object.index) != nullptr;

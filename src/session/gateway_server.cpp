@@ -103,8 +103,10 @@ void GatewayServer::start(int who, Client& client) {
   lane.channel->set_timeout(client.timeout);
   client.order->started = true;
   served_last_ = who;
-  const bool decided =
-      session_->is_considered(node) || !session_->options().drive_folders || session_->modbus() != nullptr;
+  // A controlword may be a stop.
+  const bool decided = client.order->request.object == objects::kControlword ||
+                       session_->is_considered(node) || !session_->options().drive_folders ||
+                       session_->modbus() != nullptr;
   if (!decided) {
     lane.numbers.emplace().node = node;
     return ask_number(lane);

@@ -5,7 +5,6 @@
 #include <array>
 #include <utility>
 
-#include "drive/access_alarms.hpp"
 #include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
@@ -32,7 +31,7 @@ Result<void> listen_until(Session& session, TimePoint end) {
 /// What decides what a drive may be asked for: 1000h, 1018h:01 and :02; with 1018h:03 where it is wanted. A
 /// node that does not answer has an error.
 std::vector<Result<Identity>> read_numbers(Session& session, std::span<const std::uint8_t> nodes,
-                                           const drive::Rules& rules, bool with_revision) {
+                                           bool with_revision) {
   std::vector<ObjectAddress> objects{objects::kDeviceType, objects::kVendorId, objects::kProductCode};
   if (with_revision) objects.push_back(objects::kRevision);
   std::vector<SdoRequest> requests;
@@ -54,11 +53,7 @@ std::vector<Result<Identity>> read_numbers(Session& session, std::span<const std
     identity.vendor_id = u32_in(here[1]);
     identity.product_code = u32_in(here[2]);
     if (with_revision) identity.revision = u32_in(here[3]);
-    // Where the family that was named fits, no other has to be looked for.
-    if (has_marks(rules) && agrees_in_numbers(identity, rules) && !drive::has_access_alarms(rules))
-      session.be_wary(nodes[i], nullptr, true);
-    else
-      consider_numbers(session, identity);
+    consider_numbers(session, identity);
     out.emplace_back(std::move(identity));
   }
   return out;
@@ -119,7 +114,7 @@ std::vector<Result<Identity>> identify(Session& session, std::span<const std::ui
   std::vector<std::uint8_t> asked;
   for (const auto node : nodes)
     if (known_identity(session, node, rules, with_revision) == nullptr) asked.push_back(node);
-  auto fresh = read_numbers(session, asked, rules, with_revision);
+  auto fresh = read_numbers(session, asked, with_revision);
   read_details(session, fresh, rules);
   std::vector<Result<Identity>> out;
   auto at = fresh.begin();

@@ -70,6 +70,15 @@ TEST_F(AccessAlarm, NoLongerFormOfACommandRaisesOne) {
     }
 }
 
+TEST_F(AccessAlarm, NoneComesWithTheFileOfTheMaker) {
+  const auto file = source_dir() + "/eds/invt/da200.eds";
+  for (const auto* line : {"enable -n 1 -y", "jog 60rpm --for 200ms --turn 10000 -n 1 -y", "status -n 1"}) {
+    lines.forget_drives();
+    (void)lines.perform(fmt::format("{} -d {}", line, file), {}, false);
+    EXPECT_EQ(access_alarms(lines.frames), "") << line;
+  }
+}
+
 TEST_F(AccessAlarm, ADryRunShowsNoWriteThatIsNotSent) {
   EXPECT_EQ(lines.perform("write 0x603F 1 --type u16 -n 1 --dry-run"), 5) << text();
   EXPECT_NE(text().find("not sent: the data of da200 have no such object"), std::string::npos) << text();

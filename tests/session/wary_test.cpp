@@ -14,6 +14,7 @@
 
 #include "can/frame.hpp"
 #include "canopen/sdo_abort.hpp"
+#include "drive/access_alarms.hpp"
 #include "drive/profile.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
@@ -124,6 +125,16 @@ TEST_F(Wary, AFileOfTheUserDecidesWhichObjectsTheDriveHas) {
   EXPECT_EQ(access_alarm(session, 1, {0x5FFF, 0}), "Er26-1") << "neither has it";
   consider_numbers(session, nodes);
   EXPECT_EQ(access_alarm(session, 1, kNotOfDa200), "Er26-1") << "the next line names no file";
+}
+
+/// A spare alarm costs less than a drive that stays energised.
+TEST(AccessAlarms, NoFileKeepsAStopFromTheDrive) {
+  drive::Profile without_objects;
+  without_objects.rules = drive::load_profile("da200", kFolders).value().rules;
+  for (const auto object : {objects::kControlword, objects::kStatusword, objects::kModeOfOperation,
+                            objects::kModeDisplay, objects::kTargetVelocity})
+    EXPECT_EQ(drive::access_alarm(without_objects, object), "") << to_string(object);
+  EXPECT_EQ(drive::access_alarm(without_objects, {0x6064, 0}), "Er26-1");
 }
 
 TEST_F(Wary, IdentificationAsksOneDa200ForItsNumbersOnly) {
