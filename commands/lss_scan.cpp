@@ -151,13 +151,11 @@ report::Table slaves_table(const Context& context, std::span<const session::LssF
     const auto guess =
         a.vendor == 0 ? std::string() : show::guess_text(session::guess_by_sii(identity, families));
     const auto end = i < given.size() ? given[i] : Given{};
-    table.rows.push_back(
-        {report::Hex{a.vendor, 8}, report::Hex{a.product, 8}, report::Hex{a.revision, 8}, a.serial,
-         found[i].slaves, report::text_or_null(guess), found[i].node ? Value(*found[i].node) : Value(),
-         end.node ? Value(*end.node) : Value(),
-         i < given.size() || given.empty() || found[i].node ? report::text_or_null(end.outcome.result)
-                                                            : Value("not reached"),
-         end.outcome.kept ? Value(*end.outcome.kept) : Value()});
+    table.rows.push_back({report::Hex{a.vendor, 8}, report::Hex{a.product, 8}, report::Hex{a.revision, 8},
+                          a.serial, found[i].slaves, report::text_or_null(guess),
+                          found[i].node ? Value(*found[i].node) : Value(),
+                          end.node ? Value(*end.node) : Value(), report::text_or_null(end.outcome.result),
+                          end.outcome.kept ? Value(*end.outcome.kept) : Value()});
   }
   table.json_only = found.empty();
   return table;

@@ -14,7 +14,7 @@ constexpr Parameter kLssSelectParameters[] = {
 Result<report::Value> run_lss_select(Context& context, const Arguments& arguments) {
   const auto choice = lss_choice(context, arguments);
   if (!choice) return fail(choice.error());
-  // The lines behind it mean the drive of the axis.
+  // The lines after it mean the drive of the axis.
   for (const auto* axis : context.axes) {
     session::Identity identity;
     identity.node = axis->node;

@@ -93,7 +93,7 @@ Result<void> wait_for_boots(session::Session& session, std::span<const Before> n
   return waited ? Result<void>() : fail(waited.error());
 }
 
-/// Behind a reset of all nodes: what waited for it is forgotten only where the restart is heard.
+/// After a reset of all nodes: what waited for it is forgotten only where the restart is heard.
 Result<void> hear_owed_restarts(const Context& context) {
   auto& session = *context.session;
   std::vector<std::uint8_t> owing;
@@ -102,7 +102,7 @@ Result<void> hear_owed_restarts(const Context& context) {
   return wait_for_boots(session, session::look_from_now(session, owing));
 }
 
-/// Behind the command: whether anybody is there at all. Of a stopped node without heartbeat and guarding
+/// After the command: whether anybody is there at all. Of a stopped node without heartbeat and guarding
 /// nothing can be known, so that its silence is no error.
 Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Before>& nodes) {
   auto& session = *context.session;

@@ -188,16 +188,13 @@ Record status_record(Context& context, std::uint8_t node, std::span<const Result
     add_nmt_state(out, context, node, answers);
   add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
-  if (auto owed = show::owed_records(context.profile, show::owed_values(context, node)); !owed.empty())
-    out.push_back({"restart_owed", std::move(owed), Show::json});
+  // What the drive has stored, and does not go by yet.
+  const auto owed = show::owed_restart(*context.session, context.state_folder, node);
+  if (auto notice = show::owed_notice(context, node, owed); !notice.empty())
+    context.notices.push_back(std::move(notice));
+  if (!owed.values.empty())
+    out.push_back({"restart_owed", show::owed_records(context.profile, owed.values), Show::json});
   return out;
-}
-
-/// What the drive has stored, and does not go by yet.
-void tell_owed(Context& context) {
-  for (const auto node : context.nodes)
-    if (auto notice = show::owed_notice(context, node); !notice.empty())
-      context.notices.push_back(std::move(notice));
 }
 
 Value mode_cell(const Context& context, const Result<Bytes>& answer) {
@@ -268,7 +265,6 @@ Result<report::Value> run_status(Context& context, const Arguments& arguments) {
     out.documents.emplace_back(status_record(context, context.nodes[i], mine));
     out.rows.push_back(overview_row(context, context.nodes[i], mine));
   }
-  tell_owed(context);
   out.json_only = out.rows.empty();
   if (arguments.has("--long")) return report::Value(std::move(out.documents));
   return report::Value(std::move(out));
@@ -293,7 +289,7 @@ const Command kStatus{
         "full; JSON always has all of it. The NMT state comes from the heartbeat; if "
         "the node sends one, status waits for it. On EtherCAT the slave is asked for its AL state; in SAFE-OP and "
         "OP --long shows the counts of process data as well. Values that were written, and that the drive goes by only after "
-        "a restart, are told until servoctl has seen the restart; --restarted says that there was one.",
+        "a restart, are shown until servoctl has seen the restart; --restarted says that there was one.",
     .parameters = kStatusParameters,
     .examples = kStatusExamples,
     .needs = Needs::node,

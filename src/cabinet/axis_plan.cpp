@@ -134,11 +134,11 @@ class AxisPlanner {
 
   /// What the drive has stored it goes by only after a restart.
   void note_owed() {
-    const auto owed = show::owed_values(*desk_, axis_->node);
-    if (owed.empty()) return;
-    out_.owed = show::owed_names(desk_->profile, owed);
+    const auto owed = show::owed_restart(*desk_->session, desk_->state_folder, axis_->node);
+    if (auto notice = show::owed_notice(*desk_, axis_->node, owed); !notice.empty())
+      desk_->notices.push_back(std::move(notice));
+    out_.owed = show::owed_names(desk_->profile, owed.values);
     for (const auto& name : out_.owed) add_need(out_.needs, AxisNeed::Kind::restart, name);
-    desk_->notices.push_back(show::owed_notice(*desk_, axis_->node));
   }
 
   /// With the line of the file that says it.

@@ -37,7 +37,7 @@ Result<void> check_whole_file(const command::Command& command, const Settings& s
                           bus                      ? "--bus"
                           : settings.nodes_typed() ? "--node"
                                                    : "--drive"),
-              "leave it out; axes are chosen by name: `--axis` or the word behind the command");
+              "leave it out; axes are chosen by name: `--axis` or the word after the command");
 }
 
 Result<void> check_words(const command::Command& command, command::Context& context,

@@ -65,6 +65,22 @@ Result<void> check_several(const command::Command& command, const command::Argum
                         : fmt::format("such as -n {}", first));
 }
 
+/// Bus and file contradict each other, and a drive is to be stopped: `all` are those of both, and numbers are
+/// nodes of the bus.
+Result<std::vector<LinePart>> ways_out(const cabinet::Cabinet& cabinet, const ParsedLine& line,
+                                       const Settings& given, const Error& contradiction,
+                                       std::vector<std::string>& notices) {
+  notices.push_back(contradiction.message);
+  if (!equals_nocase(given.nodes, "all")) return std::vector<LinePart>();
+  auto of_file = given;
+  of_file.bus.clear();
+  auto parts = parts_of(cabinet, *line.command, line.arguments, of_file, notices);
+  if (!parts) return parts;
+  parts->push_back({given, {}, {}});
+  parts->back().settings.of_cabinet = true;  // The other buses stay open.
+  return parts;
+}
+
 }  // namespace
 
 std::vector<std::string> Shell::name_axes(std::vector<std::string> words, const CommandMatch& match) {
@@ -100,18 +116,16 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
   if (!named && !(on_bus && given.bus.empty()) && !may_name_bus(given.bus) && !rivals)
     return std::vector<LinePart>();
   const auto known = cabinet(given);
+  if (!known && command.way_out && rivals) {
+    notices.push_back(fmt::format("the cabinet file is not used: {}", known.error().message));
+    return std::vector<LinePart>();
+  }
   if (!known) return fail(known.error());
   if (*known == nullptr) return std::vector<LinePart>();
   const auto settings = rivals ? settle_bus(**known, given, notices) : given;
-  if (!settings && !command.way_out) return fail(settings.error());
-  // A way out goes to both.
-  auto of_file = settings.value_or(given);
-  if (!settings) of_file.bus.clear();
-  auto parts = parts_of(**known, command, line.arguments, of_file, notices);
-  if (!settings && parts) {
-    parts->push_back({given, {}, {}});
-    parts->back().settings.of_cabinet = true;  // The other buses stay open.
-  }
+  if (!settings && command.way_out) return ways_out(**known, line, given, settings.error(), notices);
+  if (!settings) return fail(settings.error());
+  auto parts = parts_of(**known, command, line.arguments, *settings, notices);
   if (parts)
     if (const auto good = check_several(command, line.arguments, *parts); !good) return fail(good.error());
   return parts;

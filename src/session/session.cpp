@@ -113,7 +113,10 @@ std::vector<NodeEvent> Session::take_events() {
   std::vector<NodeEvent> out;
   while (auto event = network_->take_event()) {
     // Another drive may come in its place.
-    if (std::holds_alternative<NodeEvent::Gone>(event->what)) identities_.forget(event->node);
+    if (std::holds_alternative<NodeEvent::Gone>(event->what)) {
+      identities_.forget(event->node);
+      wary_[event->node & 0x7FU].boots.reset();
+    }
     out.push_back(std::move(*event));
   }
   return out;

@@ -20,8 +20,6 @@ class AddressWriting {
 
   /// What is begun is brought to its end, whoever is impatient.
   bool write() {
-    if (const auto goes_on = session::refuse_cancelled(*session_); !goes_on)
-      return fail_with(AddressEnd::as_before, goes_on.error());
     const session::Deaf deaf(*session_);
     session::StorageScope storage(*session_, desk_->profile, change_->node);
     const bool keeps = session::can_store(*desk_->profile);

@@ -131,9 +131,8 @@ OwedRestart owed_restart(session::Session& session, const fs::path& state_folder
   }
   if (!*kept) return {};
   const auto now = session::read_identity(session, node);
-  if (!now) return {};
   const bool told = (*kept)->identity.device_type || (*kept)->identity.vendor_id;
-  if (told && !change_of((*kept)->identity, *now).empty()) return {};
+  if (now && told && !change_of((*kept)->identity, *now).empty()) return {};
   // What it does not hold any more, a restart has taken, or somebody else.
   std::erase_if((*kept)->values, [&](const OwedValue& value) {
     const auto holds = session.upload(node, value.object);
@@ -182,8 +181,7 @@ report::List owed_records(const drive::Profile* profile, const std::vector<OwedV
   return out;
 }
 
-std::string owed_notice(const Desk& desk, std::uint8_t node) {
-  const auto owed = owed_restart(*desk.session, desk.state_folder, node);
+std::string owed_notice(const Desk& desk, std::uint8_t node, const OwedRestart& owed) {
   if (owed.unread)
     return fmt::format("node {}: what waits for a restart is not known: {}; {}", node, owed.unread->message,
                        owed.unread->hint);

@@ -41,12 +41,9 @@ class OwedRestartFile {
 };
 
 /// What is stored in a node and comes into force with its next restart, where it is the drive that this is
-/// kept of: it is asked who it is only where something is kept.
+/// kept of: it is asked who it is only where something is kept. One that does not say is taken for it.
 OwedRestart owed_restart(session::Session& session, const std::filesystem::path& state_folder,
                          std::uint8_t node);
-inline std::vector<session::OwedValue> owed_values(const Desk& desk, std::uint8_t node) {
-  return owed_restart(*desk.session, desk.state_folder, node).values;
-}
 
 /// `stored, in force after a restart`, or `written, …` where one of them is not known to be stored.
 std::string_view owed_lead(const std::vector<session::OwedValue>& values);
@@ -59,6 +56,6 @@ std::vector<std::string> owed_names(const drive::Profile* profile,
 /// One record for each: `index sub id in_force stored`, the two as raw bytes.
 report::List owed_records(const drive::Profile* profile, const std::vector<session::OwedValue>& values);
 /// What is said of a node that waits; empty where it does not.
-std::string owed_notice(const Desk& desk, std::uint8_t node);
+std::string owed_notice(const Desk& desk, std::uint8_t node, const OwedRestart& owed);
 
 }  // namespace servoctl::show
