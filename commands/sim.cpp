@@ -93,7 +93,7 @@ const Command kSim{
         "memory, fault=0xFF00@2s raises a fault, silent=5s silences them after 5 s, delay=20ms delays "
         "answers, lie=late,twice makes them deviate from the standard (README.md, docs/modbus.md and "
         "docs/ethercat.md list the words); counts=8388608 sets the counts per revolution where no object reports them; "
-        "panel=PA-20=0,PA-74=1 sets parameters that only the panel has. "
+        "panel=PA-20=0,P0.03=7 sets parameters as on the panel. "
         "On EtherCAT, `servoctl sim sv2@1,sv2@2 --bus coe:local:cell` (or coe:veth1, one end of a veth pair), "
         "nodes are positions, and more can go wrong: lose=100 loses every 100th frame, short=100 lowers the "
         "working counters of every 100th, cut=2@5s-8s cuts the cable in front of drive 2 and joins it again, "

@@ -162,6 +162,9 @@ struct StoreRules {
   std::vector<std::string> locked;    ///< Parameters the password guards.
   std::string restore_at_start;       ///< Parameter: 1 restores the defaults at the next start.
   std::string clear_alarms_at_start;  ///< Parameter: 1 clears the alarm records at the next start.
+  /// A value that needs standstill is taken while the drive is enabled, and takes effect once it is disabled;
+  /// false: it is refused.
+  bool defers_standstill = false;
 };
 
 /// How the counts per motor revolution are measured where no object gives them.
@@ -216,7 +219,8 @@ struct FaultRules {
   std::optional<Condition> reset_enabled_by;
   std::vector<Setting> reset;  ///< What resets a fault beside the controlword.
   bool by_controlword = true;
-  std::string alarm;            ///< Parameter or object that holds the panel's alarm number.
+  std::string alarm;  ///< Parameter or object that holds the panel's alarm number.
+  std::string ramp;   ///< Object by whose ramp the reaction stops the motor; empty: it is let go at once.
   std::string length_alarm;     ///< Panel text of the alarm a write of a wrong length raises.
   std::string mapping_alarm;    ///< … of mapping in Operational.
   std::string range_alarm;      ///< … of a value out of range.
@@ -231,6 +235,9 @@ struct AbortText {
   std::string text;
   std::string text_zh;
 };
+
+/// Instead of an object with a ramp: by all the torque the drive has.
+inline constexpr std::string_view kMostTorque = "most torque";
 
 /// What `<family>.toml` says: the rules of a family that no table can carry. Parameters are named by their
 /// id. docs/drive-data.md describes every key.
@@ -270,6 +277,9 @@ struct Rules {
   bool remote_bit = true;  ///< Bit 9 (remote) of the statusword says whether the drive obeys the bus.
   std::vector<ModeBits> mode_bits;
   std::vector<std::int64_t> quick_stop_stays_enabled;
+  /// Values of 605Ah that slow the motor down: the object that holds the ramp, or kMostTorque. By any other
+  /// value it is let go at once. 0 stands for a drive without 605Ah.
+  std::map<std::int64_t, std::string> quick_stop_ramps;
 
   std::map<std::uint32_t, AbortText> abort_texts;
   std::vector<std::string> assumed;  ///< Sections, or keys as `section.key`, the manual does not state.

@@ -1,6 +1,7 @@
 #include "drive/rules_reader.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "base/number.hpp"
 #include "drive/pdo_recipe_reader.hpp"
@@ -76,6 +77,19 @@ TableReader::Handler list_into(std::vector<T>& out) {
   return [&out](const toml::node& node) {
     return get_list(node, out, [](const toml::node& n, T& o) { return get(n, o); });
   };
+}
+
+/// A table whose keys are numbers, `{ 3 = 12 }`.
+template <class T>
+bool read_numbered(const toml::node& node, std::map<std::int64_t, T>& out) {
+  const auto* table = node.as_table();
+  if (table == nullptr) return false;
+  for (const auto& [key, value] : *table) {
+    const auto digits = parse_integer(std::string_view(key.str()));
+    const auto number = digits ? digits->as_signed() : std::nullopt;
+    if (!number || !drive::get(value, out[*number])) return false;
+  }
+  return true;
 }
 
 TableReader::Handler condition_into(std::optional<Condition>& out) {
@@ -179,7 +193,8 @@ Result<void> read_store(const TableReader& reader, Rules& rules) {
                       {"unlock", into(out.unlock)},
                       {"unlock_open", into(out.unlock_open)},
                       {"unlock_closed", into(out.unlock_closed)},
-                      {"locked", into(out.locked)}});
+                      {"locked", into(out.locked)},
+                      {"defers_standstill", into(out.defers_standstill)}});
 }
 
 Result<void> read_restart(const TableReader& reader, Rules& rules) {
@@ -206,18 +221,9 @@ Result<void> read_statusword(const TableReader& reader, Rules& rules) {
 }
 
 Result<void> read_quick_stop(const TableReader& reader, Rules& rules) {
-  return reader.read({{"stays_enabled", into(rules.quick_stop_stays_enabled)}});
-}
-
-bool read_homing_like(const toml::node& node, MotionRules& out) {
-  const auto* table = node.as_table();
-  if (table == nullptr) return false;
-  for (const auto& [key, value] : *table) {
-    const auto number = parse_integer(std::string_view(key.str()));
-    const auto method = number ? number->as_signed() : std::nullopt;
-    if (!method || !drive::get(value, out.homing_like[*method])) return false;
-  }
-  return true;
+  return reader.read(
+      {{"stays_enabled", into(rules.quick_stop_stays_enabled)},
+       {"ramps", [&](const toml::node& n) { return read_numbered(n, rules.quick_stop_ramps); }}});
 }
 
 Result<void> read_motion(const TableReader& reader, Rules& rules) {
@@ -247,7 +253,7 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
         }},
        {"inputs", [&](const auto& n) { return into(out.inputs)(n) && out.inputs.size() == 3; }},
        {"no_homing", into(out.no_homing)},
-       {"homing_like", [&](const toml::node& n) { return read_homing_like(n, out); }},
+       {"homing_like", [&](const toml::node& n) { return read_numbered(n, out.homing_like); }},
        {"software_limits", condition_into(out.software_limits)},
        {"software_limits_homed", into(out.software_limits_homed)},
        {"speed_limit", into(out.speed_limit)},
@@ -274,6 +280,7 @@ Result<void> read_fault(const TableReader& reader, Rules& rules) {
                       {"reset", list_into(out.reset)},
                       {"by_controlword", into(out.by_controlword)},
                       {"alarm", into(out.alarm)},
+                      {"ramp", into(out.ramp)},
                       {"length_alarm", into(out.length_alarm)},
                       {"mapping_alarm", into(out.mapping_alarm)},
                       {"range_alarm", into(out.range_alarm)},

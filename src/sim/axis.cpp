@@ -58,13 +58,13 @@ bool Axis::controls_position() const {
 bool Axis::is_active() const { return (controlword_ & kNewSetpoint) != 0; }
 bool Axis::is_halted() const { return profile_->rules.motion.halt && (controlword_ & kHalt) != 0; }
 
-void Axis::on_controlword(std::uint16_t controlword, bool enabled, TimePoint now) {
-  advance(enabled, now);
+void Axis::on_controlword(std::uint16_t controlword, Drive drive, TimePoint now) {
+  advance(drive, now);
   look_at_switch_rules();
   const bool rising = (controlword & kNewSetpoint) != 0 && (controlword_ & kNewSetpoint) == 0;
   const bool low = (controlword & kNewSetpoint) == 0;
   controlword_ = controlword;
-  if (!enabled) {
+  if (drive != Drive::obeying) {
     target_.reset();
     waiting_.clear();
     acknowledged_ = false;
@@ -132,18 +132,30 @@ void Axis::home(double seconds) {
   homed_ = true;
 }
 
-void Axis::advance(bool enabled, TimePoint now) {
-  if (!enabled) {
+/// Whether nothing is left to be done step by step.
+bool Axis::has_settled() const {
+  switch (drive_) {
+    case Drive::released: return true;
+    case Drive::stopping: return velocity_ == 0;
+    case Drive::obeying: return is_steady() && !homing_.is_running();
+  }
+  return true;
+}
+
+void Axis::advance(Drive drive, TimePoint now) {
+  drive_ = drive;
+  if (drive == Drive::released) {
     velocity_ = 0;
     torque_ = 0;
     behind_ = 0;
     out_since_.reset();
   }
   for (; time_ + std::chrono::milliseconds(1) <= now; time_ += std::chrono::milliseconds(1)) {
-    if (enabled) follow();
+    if (drive == Drive::obeying) follow();
     if (kind() != Kind::homing) homing_.stop();
-    if (!enabled || (is_steady() && !homing_.is_running())) {
-      if (kind() != Kind::torque && kind() != Kind::cyclic_torque) torque_ = 0;
+    if (has_settled()) {
+      const bool pushes = kind() == Kind::torque || kind() == Kind::cyclic_torque;
+      if (!pushes || drive == Drive::stopping) torque_ = 0;
       travel(std::chrono::duration<double>(now - time_).count());
       time_ = now;
       break;

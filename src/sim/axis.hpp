@@ -38,12 +38,22 @@ class Axis {
         encoder_(find_encoder()),
         speed_monitor_(find_speed_monitor()) {}
 
+  /// What the power stage lets it do.
+  enum class Drive : std::uint8_t {
+    released,  ///< No torque: it is taken to stand still at once.
+    stopping,  ///< To rest by the ramp of begin_stop(), and held there, whatever its targets say.
+    obeying,   ///< Operation enabled.
+  };
+
   /// Power-on: at rest, nothing homed, no set-point.
   void reset(TimePoint now);
-  /// A controlword, after the power stage has taken it. `enabled`: operation enabled.
-  void on_controlword(std::uint16_t controlword, bool enabled, TimePoint now);
+  /// A controlword, after the power stage has taken it.
+  void on_controlword(std::uint16_t controlword, Drive drive, TimePoint now);
   /// Lets time pass and puts position, speed and torque into their objects.
-  void advance(bool enabled, TimePoint now);
+  void advance(Drive drive, TimePoint now);
+  /// From now on Drive::stopping slows down by this object's ramp, or by drive::kMostTorque. The time that
+  /// takes.
+  Duration begin_stop(const std::string& ramp);
 
   /// Bits 10 to 15 of the statusword while the drive is enabled; else what lasts of them: homed, at a limit,
   /// following error.
@@ -94,7 +104,9 @@ class Axis {
   void start_homing();
   void home(double seconds);
   bool is_steady() const;
+  bool has_settled() const;
   void step(double seconds);
+  void obey(double seconds);
   void approach(double wanted_velocity, double seconds);
   void show_torque(double acceleration);
   double rated_torque() const;
@@ -145,7 +157,7 @@ class Axis {
   ObjectAddress speed_object() const;               ///< Holds the speed of a move to a position.
   double speed_factor(ObjectAddress object) const;  ///< One of the object's speed unit in units a second.
   double ramp(ObjectAddress object) const;          ///< Units a second a second.
-  double ramp() const;                              ///< The one of the present mode.
+  double ramp() const;                              ///< The one of the present mode, or of a stop.
   double turning() const;                           ///< The speed of the motor itself.
   std::uint16_t position_bits() const;
   std::uint16_t homing_bits() const;
@@ -165,6 +177,8 @@ class Axis {
   double origin_ = 0;  ///< 6064h where the axis stood at power-on.
   double velocity_ = 0;
   double torque_ = 0;  ///< In the unit of 6077h.
+  Drive drive_ = Drive::released;
+  double stop_ramp_ = 0;  ///< Units a second a second.
   std::optional<double> target_;
   std::deque<double> waiting_;
   bool acknowledged_ = false;  ///< Bit 12 in profile position.

@@ -1,9 +1,11 @@
 // How a simulated axis moves.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
+#include "drive/rules.hpp"
 #include "drive/standard_objects.hpp"
 #include "sim/axis.hpp"
 
@@ -46,7 +48,7 @@ Axis::Range Axis::limits() const {
   constexpr Range kAll{-Track::kFar, Track::kFar};
   const auto& motion = profile_->rules.motion;
   const auto& gate = motion.software_limits;
-  if (gate && values_->number(gate->object) != gate->value) return kAll;
+  if (gate && load_le(values_->in_force(gate->object)) != gate->value) return kAll;
   if (motion.software_limits_homed && !homed_) return kAll;
   const Range out{read(objects::kLowerPositionLimit), read(objects::kUpperPositionLimit)};
   return out.least < out.greatest ? out : kAll;
@@ -108,6 +110,18 @@ bool Axis::is_steady() const {
 }
 
 void Axis::step(double seconds) {
+  if (drive_ == Drive::obeying && kind() == Kind::homing) return home(seconds);
+  drive_ == Drive::obeying ? obey(seconds) : approach(0, seconds);
+  const auto [least, greatest] = limits();
+  const bool inside = position_ >= least && position_ <= greatest;
+  travel(seconds);
+  if (!inside || (position_ >= least && position_ <= greatest)) return;
+  position_ = std::clamp(position_, least, greatest);
+  velocity_ = 0;
+}
+
+/// The speed that the target of the mode leads to.
+void Axis::obey(double seconds) {
   switch (kind()) {
     case Kind::position:
     case Kind::interpolated:
@@ -124,15 +138,20 @@ void Axis::step(double seconds) {
       velocity_ = allowed(std::clamp(velocity_, -fastest_by_torque(), fastest_by_torque()));
       break;
     }
-    case Kind::homing: return home(seconds);
+    case Kind::homing:
     case Kind::none: approach(0, seconds); break;
   }
-  const auto [least, greatest] = limits();
-  const bool inside = position_ >= least && position_ <= greatest;
-  travel(seconds);
-  if (!inside || (position_ >= least && position_ <= greatest)) return;
-  position_ = std::clamp(position_, least, greatest);
-  velocity_ = 0;
+}
+
+Duration Axis::begin_stop(const std::string& ramp_by) {
+  const auto object = drive::place_of(*profile_, ramp_by);
+  if (ramp_by == drive::kMostTorque)
+    stop_ramp_ = most_torque() / rated_torque() * kTurnsPerSecondOfRatedTorque * units_per_turn();
+  else
+    stop_ramp_ = object ? ramp(*object) : 0;
+  if (stop_ramp_ <= 0) stop_ramp_ = ramp();
+  const std::chrono::duration<double> time(std::abs(velocity_) / stop_ramp_);
+  return std::chrono::ceil<std::chrono::milliseconds>(time) + std::chrono::milliseconds(1);
 }
 
 void Axis::approach(double wanted, double seconds) {

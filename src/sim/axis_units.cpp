@@ -121,6 +121,7 @@ double Axis::ramp(ObjectAddress object) const {
 
 /// The ramps of cyclic modes are the master's.
 double Axis::ramp() const {
+  if (drive_ == Drive::stopping) return stop_ramp_;
   if (kind() == Kind::cyclic_velocity) return kNoRamp;
   const bool own =
       kind() == Kind::homing && profile_->dictionary.find(objects::kHomingAcceleration) != nullptr;

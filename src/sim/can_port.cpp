@@ -67,7 +67,7 @@ void CanPort::on_lss(const can::Frame& frame, TimePoint now) {
   lss_->on_frame(frame);
   while (const auto answer = lss_->take_frame()) tx_.push_back(*answer);
   if (!lss_->take_start()) return;
-  full_restart_ = false;
+  boots_ = Boot::reset_communication;
   boot_at_ = now + kBootTime;
 }
 
@@ -157,8 +157,10 @@ void CanPort::on_written(ObjectAddress object) {
 
 void CanPort::boot(TimePoint now) {
   boot_at_ = kNever;
-  if (full_restart_) {
+  if (boots_ == Boot::power_on) {
     model_->power_on(now);
+  } else if (boots_ == Boot::reset_node) {
+    model_->reset_node(now);
   } else {
     if (lss_) model_->set_node(lss_->pending_node());
     model_->reset_communication(now);
@@ -186,7 +188,7 @@ void CanPort::on_nmt(NmtCommand command, TimePoint now) {
     case NmtCommand::enter_pre_operational: return set_nmt(NmtState::pre_operational, now);
     case NmtCommand::reset_node:
     case NmtCommand::reset_communication:
-      full_restart_ = command == NmtCommand::reset_node;
+      boots_ = command == NmtCommand::reset_node ? Boot::reset_node : Boot::reset_communication;
       boot_at_ = now + kBootTime;
       error_control_.stop();
       consumer_ = {};

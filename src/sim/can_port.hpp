@@ -70,7 +70,8 @@ class CanPort final : public Device, private DrivePort {
   std::optional<LssSlave> lss_;
   canopen::NmtState nmt_ = canopen::NmtState::initialising;
   TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.
-  bool full_restart_ = true;
+  enum class Boot : std::uint8_t { power_on, reset_node, reset_communication };
+  Boot boots_ = Boot::power_on;  ///< What the next boot-up comes of.
   EmergencyProducer emergencies_;
   std::deque<can::Frame> tx_;
   AnswerWay answers_;

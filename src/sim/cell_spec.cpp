@@ -88,7 +88,7 @@ Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<D
   return spec.wrong(fmt::format("'counts={}': all drives here report their counts per revolution", text));
 }
 
-/// `NAME=VALUE` of a parameter that has no object.
+/// `NAME=VALUE` of a parameter of this family.
 std::optional<std::pair<std::string, std::int64_t>> panel_value(const drive::Profile& profile,
                                                                 std::string_view text) {
   const auto equals = text.find('=');
@@ -96,21 +96,22 @@ std::optional<std::pair<std::string, std::int64_t>> panel_value(const drive::Pro
   const auto number = parse_integer(text.substr(equals + 1));
   const auto value = number ? number->as_signed() : std::nullopt;
   const auto parameter = drive::resolve_parameter(profile, text.substr(0, equals));
-  if (!value || !parameter || (*parameter)->object) return std::nullopt;
+  if (!value || !parameter) return std::nullopt;
   return std::pair((*parameter)->id, *value);
 }
 
 /// What was set on the panel of these drives.
 Result<bool> set_on_panel(const CellSpec& spec, std::string_view text, std::span<DriveModel* const> drives) {
-  for (auto* drive : drives)
-    for (const auto one : split(text, ',')) {
+  for (const auto one : split(text, ',')) {
+    bool taken = false;
+    for (auto* drive : drives) {
       const auto value = panel_value(drive->profile(), one);
-      if (!value)
-        return spec.wrong(fmt::format(
-            "'panel={}' is not NAME=VALUE of parameters that only the panel has: sim:sv2@1?panel=PA-20=0",
-            text));
-      drive->panel()[value->first] = value->second;
+      taken = (value && drive->set_on_panel(value->first, value->second)) || taken;
     }
+    if (!taken)
+      return spec.wrong(fmt::format(
+          "'panel={}' is not NAME=VALUE of parameters that a drive here has: sim:sv2@1?panel=PA-20=0", text));
+  }
   return true;
 }
 

@@ -30,7 +30,14 @@ DriveModel::DriveModel(const drive::Profile& profile, std::uint8_t node, Memory&
 void DriveModel::power_on(TimePoint now) {
   now_ = now;
   operational_ = false;
-  load_values(now);
+  load_values(true, now);
+  begin_communication();
+}
+
+void DriveModel::reset_node(TimePoint now) {
+  now_ = now;
+  operational_ = false;
+  load_values(profile_->rules.nmt.address_after != drive::NmtRules::Restart::power_cycle, now);
   begin_communication();
 }
 
@@ -51,19 +58,21 @@ void DriveModel::begin_communication() {
   load_mirrors();
 }
 
-/// What a drive has when its power comes.
-void DriveModel::load_values(TimePoint now) {
+/// What a drive has when its power comes, or without that (`restarts` is false) when it begins anew.
+void DriveModel::load_values(bool restarts, TimePoint now) {
   const auto load = [this] {
     values_.load_defaults(node_);
     for (const auto& cell : memory_->cells(key_)) values_.set(cell.first, cell.second);
   };
-  restore_if_asked();
+  if (restarts) restore_if_asked();
   load();
-  if (const auto kept = kept_node(); kept && *kept != node_) {
+  if (const auto kept = kept_node(); restarts && kept && *kept != node_) {
     node_ = *kept;
     load();
   }
-  values_.start();
+  if (restarts) values_.start();
+  values_.release();
+  ramps_down_ = false;
   power_.reset();
   axis_.reset(now);
   errors_ = {};
@@ -86,6 +95,7 @@ void DriveModel::set_operational(bool operational) {
 
 void DriveModel::on_time(TimePoint now) {
   now_ = now;
+  move_axis();
   power_.on_time(now);
   move_axis();
   if (!planned_fault_ || now < planned_fault_->time) return;
@@ -99,9 +109,28 @@ TimePoint DriveModel::deadline() const {
 
 /// Lets the axis move up to now; it cannot follow for long without a fault.
 void DriveModel::move_axis() {
-  axis_.advance(is_enabled(), now_);
+  axis_.advance(motor_drive(), now_);
+  if (!drive::is_energised(power_.state())) values_.release();
   if (!is_enabled() || !axis_.has_following_error()) return;
   if (!raise_alarm(profile_->rules.fault.following_alarm)) raise_fault(kFollowingErrorFault, {}, now_);
+}
+
+bool DriveModel::set_on_panel(const std::string& id, std::int64_t value) {
+  const auto* found = parameter(id);
+  if (found == nullptr) return false;
+  if (!found->object) {
+    panel()[id] = value;
+    return true;
+  }
+  const auto* entry = profile_->dictionary.find(*found->object);
+  const auto size = entry == nullptr ? std::nullopt : od::size_of(entry->type);
+  if (!size) return false;
+  const auto bytes = store_le(static_cast<std::uint64_t>(value), *size);
+  if (values_.check_write(*found->object, bytes, node_) != 0) return false;
+  memory_->cells(key_)[*found->object] = bytes;
+  values_.set(*found->object, bytes);
+  values_.start();
+  return memory_->save().has_value();
 }
 
 std::optional<std::uint64_t> DriveModel::setting(const std::string& id) const {

@@ -68,6 +68,9 @@ class DriveModel final : public canopen::ObjectStore {
 
   /// Its power comes, or comes back: what is not in its memory is lost.
   void power_on(TimePoint now);
+  /// NMT reset node: as power_on(), but where the family's parameters need a power cycle to take effect, they
+  /// keep what they are.
+  void reset_node(TimePoint now);
   /// Only 1000h to 1FFFh begin anew; state, motion and faults go on.
   void reset_communication(TimePoint now);
   /// Whether process data are exchanged. Some families take away the power when that ends.
@@ -124,6 +127,8 @@ class DriveModel final : public canopen::ObjectStore {
   bool is_moving() const { return axis_.is_moving(); }
   /// What its objects hold, past the checks of read().
   const ObjectValues& values() const { return values_; }
+  /// Sets a parameter as on its panel while the drive has no power; false for one the family does not have.
+  bool set_on_panel(const std::string& id, std::int64_t value);
   /// What a panel parameter is set to, as it took effect; empty where the family has none of this name.
   std::optional<std::uint64_t> setting(const std::string& id) const;
   /// Writes that went to the memory that outlives power-off since the drive was made.
@@ -143,7 +148,7 @@ class DriveModel final : public canopen::ObjectStore {
   std::uint32_t save_objects(std::uint8_t group);
   std::uint32_t restore_objects(std::uint8_t group);
 
-  void load_values(TimePoint now);
+  void load_values(bool restarts, TimePoint now);
   void begin_memory(std::uint8_t node);
   std::optional<std::uint8_t> kept_node() const;
   void load_communication_area();
@@ -151,6 +156,10 @@ class DriveModel final : public canopen::ObjectStore {
   void restore_if_asked();
   void begin_communication();
   bool is_enabled() const { return power_.state() == drive::DriveState::operation_enabled; }
+  Axis::Drive motor_drive() const;
+  void begin_stop(const std::string& ramp);
+  void begin_quick_stop(std::uint16_t controlword);
+  bool obeys_bus() const;
   bool is_locked(ObjectAddress object) const;
   bool is_kept(ObjectAddress object) const;
   bool may_reset() const;
@@ -172,6 +181,7 @@ class DriveModel final : public canopen::ObjectStore {
   ObjectValues values_;
   PowerStage power_;
   Axis axis_;
+  bool ramps_down_ = false;  ///< The present quick stop or fault reaction has a ramp.
   bool operational_ = false;
   TimePoint now_{};
   ErrorLog errors_;

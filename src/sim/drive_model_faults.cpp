@@ -21,7 +21,11 @@ void DriveModel::raise_fault(std::uint16_t code, std::array<std::uint8_t, 5> ven
   const auto found = drive::faults_of(profile_->faults, profile_->rules.emergency, code, vendor);
   if (!found.empty() && found.front()->kind == drive::Fault::Kind::status) return tell(code, vendor);
   fault_ = found.size() == 1 ? found.front() : nullptr;
+  axis_.advance(motor_drive(), now);
+  const bool turns = drive::is_energised(power_.state());
+  const auto before = power_.state();
   power_.raise_fault(now);
+  if (power_.state() != before) begin_stop(turns ? profile_->rules.fault.ramp : std::string());
   values_.set_number(objects::kErrorCode, code);
   if (const auto alarm = drive::resolve(profile_, profile_->rules.fault.alarm); alarm)
     values_.set_number(alarm->address, code);
@@ -49,7 +53,8 @@ void DriveModel::on_master_lost(std::uint16_t code, TimePoint now) {
   if (option == kFault) return raise_fault(code, {}, now);
   begin_error(ErrorLog::Source::master, code);
   if (option == kDisable) power_.disable();
-  if (option == kQuickStop) power_.on_controlword(kQuickStopWord, 0, false, now);
+  move_axis();
+  if (option == kQuickStop) begin_quick_stop(kQuickStopWord);
 }
 
 /// Some families take a wrong access for a fault of the drive.

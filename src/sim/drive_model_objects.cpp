@@ -3,6 +3,7 @@
 
 #include "base/pdo_index.hpp"
 #include "canopen/sdo_abort.hpp"
+#include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "sim/drive_model.hpp"
@@ -10,6 +11,13 @@
 
 namespace servoctl::sim {
 namespace abort = canopen::sdo_abort;
+
+namespace {
+
+/// Bit 9 of the statusword: the controlword is obeyed (CiA 402-2, 8.4.2).
+constexpr std::uint16_t kRemote = 1U << 9U;
+
+}  // namespace
 
 std::uint32_t DriveModel::read(ObjectAddress object, Bytes& out) {
   const bool is_missing = misbehaviour_.missing.contains(object.index);
@@ -28,7 +36,9 @@ std::uint32_t DriveModel::read(ObjectAddress object, Bytes& out) {
     return 0;
   }
   if (object == objects::kStatusword) {
-    const auto word = power_.statusword(static_cast<std::int8_t>(values_.number(objects::kModeDisplay)));
+    const auto mode = static_cast<std::int8_t>(values_.number(objects::kModeDisplay));
+    const bool remote = obeys_bus() || !profile_->rules.remote_bit;
+    const auto word = power_.statusword(mode) & (remote ? 0xFFFFU : ~unsigned{kRemote});
     out = store_le(static_cast<std::uint16_t>(word | axis_.bits(is_enabled())), 2);
     return 0;
   }
@@ -46,7 +56,9 @@ std::uint32_t DriveModel::read(ObjectAddress object, Bytes& out) {
 std::uint32_t DriveModel::check_state(ObjectAddress object, ByteSpan data) const {
   const auto target = drive::target_at(profile_, object);
   const auto effect = drive::meaning(target, node_).effect;
-  if (effect == od::Effect::standstill && drive::is_energised(power_.state())) return abort::kDeviceState;
+  const bool refuses = !profile_->rules.store.defers_standstill;
+  if (effect == od::Effect::standstill && refuses && drive::is_energised(power_.state()))
+    return abort::kDeviceState;
   // Mode 0 is "no mode": what a drive without a default starts in (CiA 402-2, 6060h).
   const bool no_mode = target.entry != nullptr && load_le(data) == 0 &&
                        (!target.entry->default_value || load_le(values_.get(objects::kModeDisplay)) == 0);
@@ -99,7 +111,9 @@ std::uint32_t DriveModel::write(ObjectAddress object, ByteSpan data) {
   bool handled = false;
   code = write_command(object, data, handled);
   if (code != 0 || handled) return code;
-  axis_.advance(is_enabled(), now_);  // Up to now it moved by the old values.
+  axis_.advance(motor_drive(), now_);  // Up to now it moved by the old values.
+  const auto effect = drive::meaning(drive::target_at(profile_, object), node_).effect;
+  if (effect == od::Effect::standstill && drive::is_energised(power_.state())) values_.hold(object);
   values_.set(object, data);
   after_write(object, data);
   return 0;
@@ -131,7 +145,7 @@ bool DriveModel::is_kept(ObjectAddress object) const {
   const auto flash = drive::resolve(profile_, rules.flash_switch);
   const bool of_vendor = object.index >= 0x2000 && object.index < 0x6000;
   return setting && of_vendor && flash && flash->address != object && rules.to_flash &&
-         static_cast<std::int64_t>(values_.number(flash->address)) == *rules.to_flash;
+         static_cast<std::int64_t>(effective(flash->address)) == *rules.to_flash;
 }
 
 /// Whether a controlword is taken and not obeyed.
@@ -147,12 +161,41 @@ bool DriveModel::feigns(std::uint16_t controlword) {
   return true;
 }
 
+/// Whether the parameters that select the source of commands say "the bus", as they took effect.
+bool DriveModel::obeys_bus() const {
+  const auto& needs = profile_->rules.nmt.needs;
+  return std::all_of(needs.begin(), needs.end(), [&](const drive::Setting& need) {
+    const auto place = drive::place_of(*profile_, need.name);
+    return !place || static_cast<std::int64_t>(effective(*place)) == need.value;
+  });
+}
+
 void DriveModel::on_controlword(std::uint16_t controlword) {
-  if (feigns(controlword)) return;
-  const auto quick_stop = static_cast<std::int64_t>(values_.number(objects::kQuickStopOption));
-  power_.on_controlword(controlword, quick_stop, may_reset(), now_);
+  if (!obeys_bus() || feigns(controlword)) return;
+  begin_quick_stop(controlword);
   if (power_.was_reset()) clear_fault();
-  axis_.on_controlword(controlword, is_enabled(), now_);
+  axis_.on_controlword(controlword, motor_drive(), now_);
+}
+
+/// Gives the controlword to the power stage; where that begins a quick stop, 605Ah says by which ramp.
+void DriveModel::begin_quick_stop(std::uint16_t controlword) {
+  const auto option = static_cast<std::int64_t>(values_.number(objects::kQuickStopOption));
+  const auto before = power_.state();
+  power_.on_controlword(controlword, option, may_reset(), now_);
+  if (power_.state() == before || power_.state() != drive::DriveState::quick_stop_active) return;
+  const auto& ramps = profile_->rules.quick_stop_ramps;
+  const auto ramp = ramps.find(option);
+  begin_stop(ramp == ramps.end() ? std::string() : ramp->second);
+}
+
+void DriveModel::begin_stop(const std::string& ramp) {
+  ramps_down_ = !ramp.empty();
+  if (ramps_down_) power_.stop_until(now_ + axis_.begin_stop(ramp));
+}
+
+Axis::Drive DriveModel::motor_drive() const {
+  if (is_enabled()) return Axis::Drive::obeying;
+  return ramps_down_ && drive::is_energised(power_.state()) ? Axis::Drive::stopping : Axis::Drive::released;
 }
 
 void DriveModel::after_write(ObjectAddress object, ByteSpan data) {

@@ -56,9 +56,19 @@ void ObjectValues::start() {
   ++changes_;
   for (const auto& p : profile_->parameters)
     if (p.object && p.effect == od::Effect::restart) at_start_[*p.object] = get(*p.object);
+  for (const auto& object : profile_->dictionary.objects())
+    for (const auto& entry : object.entries)
+      if (entry.effect == od::Effect::restart) at_start_[entry.address] = get(entry.address);
+}
+
+void ObjectValues::release() {
+  if (held_.empty()) return;
+  held_.clear();
+  ++changes_;
 }
 
 const Bytes& ObjectValues::in_force(ObjectAddress object) const {
+  if (const auto held = held_.find(object); held != held_.end()) return held->second;
   const auto found = at_start_.find(object);
   return found == at_start_.end() ? get(object) : found->second;
 }

@@ -30,11 +30,14 @@ class ObjectValues {
   /// Abort code when the entry does not take these bytes, or 0.
   std::uint32_t check_write(ObjectAddress object, ByteSpan data, std::uint8_t node) const;
 
-  /// From now on the parameters that take effect by a restart are in force as they are.
+  /// From now on what takes effect by a restart is in force as it is.
   void start();
+  /// Until release() the value that this one has now stays in force, whatever is written.
+  void hold(ObjectAddress object) { held_.try_emplace(object, get(object)); }
+  void release();
 
   const Bytes& get(ObjectAddress object) const;
-  /// As get(); of a parameter that takes effect by a restart, what it was at start().
+  /// As get(); of what takes effect by a restart, what it was at start(), and of what is held, at hold().
   const Bytes& in_force(ObjectAddress object) const;
   std::uint64_t number(ObjectAddress object) const { return load_le(get(object)); }
   void set(ObjectAddress object, ByteSpan data) {
@@ -56,7 +59,8 @@ class ObjectValues {
 
   const drive::Profile* profile_;
   std::unordered_map<ObjectAddress, Bytes> values_;
-  std::unordered_map<ObjectAddress, Bytes> at_start_;  ///< Parameters that take effect by a restart.
+  std::unordered_map<ObjectAddress, Bytes> at_start_;  ///< What takes effect by a restart.
+  std::unordered_map<ObjectAddress, Bytes> held_;
   std::uint64_t changes_ = 0;
 };
 

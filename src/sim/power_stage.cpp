@@ -44,6 +44,10 @@ void PowerStage::raise_fault(TimePoint now) {
   deadline_ = now + kReaction;
 }
 
+void PowerStage::stop_until(TimePoint end) {
+  if (deadline_ != kNever) deadline_ = std::max(deadline_, end);
+}
+
 bool PowerStage::reset_fault() {
   if (state_ != DriveState::fault) return false;
   state_ = DriveState::switch_on_disabled;

@@ -9,7 +9,7 @@
 namespace servoctl::sim {
 
 /// The CiA 402 state machine of a simulated drive: controlwords in, statuswords out, in the numbers the
-/// family's manual prints. Quick stop and fault reaction take 20 ms.
+/// family's manual prints. Quick stop and fault reaction take 20 ms, or as long as their ramp.
 class PowerStage {
  public:
   explicit PowerStage(const drive::Rules& rules) : rules_(&rules) {}
@@ -20,6 +20,8 @@ class PowerStage {
   void on_controlword(std::uint16_t controlword, std::int64_t quick_stop_option, bool may_reset,
                       TimePoint now);
   void raise_fault(TimePoint now);
+  /// The quick stop or fault reaction that has begun ends no earlier than this.
+  void stop_until(TimePoint end);
   /// Resets a fault by other means than the controlword; false when there is none.
   bool reset_fault();
   /// De-energises at once, whatever the state; a fault stays.

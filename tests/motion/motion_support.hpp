@@ -17,6 +17,7 @@
 #include "session/wary.hpp"
 #include "sim/cell.hpp"
 #include "tests/session/troubled_bus.hpp"
+#include "tests/sim/commissioned.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::motion {
@@ -27,6 +28,7 @@ class MotionBus final : public can::Bus {
   explicit MotionBus(std::string_view spec) {
     const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     cell = sim::build_cell(spec, folders, bus.now()).value();
+    sim::commission(cell);
     for (const auto& drive : cell.drives) bus.attach(*drive);
   }
   TimePoint now() const override { return bus.now(); }

@@ -11,13 +11,15 @@
 #include "drive/standard_objects.hpp"
 #include "od/value.hpp"
 #include "sim/drive_model.hpp"
+#include "tests/sim/commissioned.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::sim {
 
 inline constexpr ObjectAddress kTargetVelocity{0x60FF, 0};
 
-/// A drive model by itself: no bus, no frame, and no port but one that the test makes.
+/// A drive model by itself, set up to obey its bus: no bus, no frame, and no port but one that the test
+/// makes.
 class DriveModelTest : public testing::Test {
  protected:
   void build(const std::string& family) {
@@ -26,6 +28,7 @@ class DriveModelTest : public testing::Test {
     ASSERT_TRUE(loaded) << loaded.error().message;
     profile_ = std::make_unique<drive::Profile>(std::move(*loaded));
     model_ = std::make_unique<DriveModel>(*profile_, 1, memory_, family);
+    commission(*model_);
     model_->power_on(now_);
   }
 

@@ -10,6 +10,7 @@ class FamilyTest : public CellTest {
  protected:
   void boot(std::string_view spec) {
     build(spec);
+    commission(cell_);
     ASSERT_EQ(next(100ms), "701#00");
   }
   /// The answer to a request; emergencies on the way are kept.

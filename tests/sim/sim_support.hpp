@@ -8,6 +8,7 @@
 #include "base/bytes.hpp"
 #include "drive/quantity.hpp"
 #include "sim/cell.hpp"
+#include "tests/sim/commissioned.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::sim {
@@ -53,12 +54,13 @@ class CellTest : public testing::Test {
   SimBus bus{SimBus::Clock::virtual_time};
 };
 
-/// One drive that is told what to do by SDO.
+/// One drive that is set up to obey its bus, and is told what to do by SDO.
 class DrivenTest : public CellTest {
  protected:
   void boot(const std::string& family) {
     family_ = family;
     build(family + "@1");
+    commission(cell_);
     ASSERT_EQ(next(std::chrono::milliseconds(100)), "701#00");
   }
   const drive::Profile& profile() const { return *cell_.profiles.front(); }

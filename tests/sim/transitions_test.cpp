@@ -72,6 +72,7 @@ class ManualTransitions : public CellTest, public testing::WithParamInterface<Ro
  protected:
   void SetUp() override {
     build(GetParam().family + "@1");
+    commission(cell_);
     ASSERT_EQ(next(100ms), "701#00");
   }
   /// The answer; what the drive has to say beside it is passed over.
