@@ -18,6 +18,7 @@ class TwoMasters {
  public:
   explicit TwoMasters(std::string_view family, std::array<std::uint64_t, 2> seeds)
       : wire(std::string(family) + "@1," + std::string(family) + "@2") {
+    sim::commission(wire.cell);
     for (std::size_t i = 0; i < 2; ++i) {
       auto bus = std::make_unique<session::SharedWire::Member>(wire);
       members[i] = bus.get();

@@ -43,6 +43,9 @@ TEST_P(ControlMode, OfTheBusObeys) {
 
 TEST_P(ControlMode, HoldsUntilTheRestart) {
   boot_in(GetParam().needed);
+  const auto& store = profile().rules.store;
+  if (!store.unlock.empty())
+    write(*profile().parameter(store.unlock)->object, std::to_string(*store.unlock_open));
   write(*profile().parameter(GetParam().mode)->object, GetParam().other);
   enable("3");
   EXPECT_EQ(status() & 0x6FU, 0x27U) << "the value in force is that of the start";
@@ -52,7 +55,8 @@ INSTANTIATE_TEST_SUITE_P(Families, ControlMode, testing::ValuesIn(kControlled),
                          [](const auto& test) { return std::string(test.param.name); });
 
 TEST_F(DrivenTest, AsDeliveredTheTsIsNotInCanopenMode) {
-  boot("ts");
+  build("ts@1");
+  ASSERT_EQ(next(100ms), "701#00");
   enable("3");
   EXPECT_EQ(status(), 0x0050U) << "Fn_00 = 2 from the factory (232, 237); CANopen needs 20 (1869)";
 }

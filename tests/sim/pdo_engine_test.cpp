@@ -10,6 +10,7 @@ class PdoEngineTest : public CellTest {
  protected:
   void boot(const std::string& family) {
     build(family + "@2");
+    commission(cell_);
     ASSERT_EQ(next(100ms), "702#00");
   }
   /// Writes by SDO, which the drive must take.
