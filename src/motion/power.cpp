@@ -5,6 +5,7 @@
 
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/control_source.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -101,7 +102,11 @@ Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
   auto what = fmt::format("does not reach {}; it is in {} (statusword 0x{:04X})", drive::name(next.reached),
                           drive::name(now_in), statusword_);
   std::string hint;
-  if (now_in == DriveState::fault || now_in == DriveState::fault_reaction_active)
+  const bool fault = now_in == DriveState::fault || now_in == DriveState::fault_reaction_active;
+  const auto source = fault ? OtherSource() : other_source(*session_, *profile_, node_);
+  if (source.is_known())
+    return drive_error(Errc::negative, node_, fmt::format("{}: {}", what, source.cause), source.remedy);
+  if (fault)
     hint = "`fault show` shows the fault";
   else if (tells(kRemote) && (statusword_ & kRemote) == 0)
     hint = fmt::format("bit 9 (remote) is 0: {}", kRemoteCauses);
@@ -112,7 +117,7 @@ Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
   else
     hint = "the manual's conditions for enabling are not met: inputs, main supply, brake, mode";
   const auto start = start_command();
-  if (!start.empty() && now_in != DriveState::fault && now_in != DriveState::fault_reaction_active)
+  if (!start.empty() && !fault)
     hint = fmt::format("some drives obey only in the state operational: `{}`; {}", start, hint);
   return drive_error(Errc::negative, node_, what, hint);
 }

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "drive/provenance.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/control_source.hpp"
 #include "motion/operation_mode.hpp"
 #include "motion/other_axes.hpp"
 #include "motion/power.hpp"
@@ -115,24 +116,23 @@ class Preflight {
 
   /// What a low bit 9 says differs from drive to drive; some set it in the state operational only.
   void add_remote(const Power& power) {
+    constexpr std::string_view kLead = "statusword bit 9 (remote) is 0";
+    const auto source = other_source(*session_, units_->profile(), node_);
     const auto start = power.start_command();
-    auto text =
-        start.empty()
-            ? fmt::format("statusword bit 9 (remote) is 0, the drive may not obey the bus: {}", kRemoteCauses)
-            : fmt::format(
-                  "statusword bit 9 (remote) is 0, the drive may not obey the bus: {}; or it sets the bit in "
-                  "the state operational only",
-                  kRemoteCauses);
+    auto text = source.is_known() ? fmt::format("{}: {}", kLead, source.cause)
+                                  : fmt::format("{}, the drive may not obey the bus: {}", kLead, kRemoteCauses);
+    if (!source.is_known() && !start.empty()) text += "; or it sets the bit in the state operational only";
     if (request_.ignores_remote) {
       add(Weight::caution, "remote", std::move(text));
       return;
     }
-    auto hint =
-        start.empty()
-            ? std::string("return control to the bus; --ignore-remote goes on after a question")
-            : fmt::format("`{}`, or return control to the bus; --ignore-remote goes on after a question",
-                          start);
-    items_.push_back({Weight::stop, "remote", std::move(text), std::move(hint)});
+    auto way = std::string("return control to the bus");
+    if (source.is_known())
+      way = source.remedy;
+    else if (!start.empty())
+      way = fmt::format("`{}`, or {}", start, way);
+    items_.push_back({Weight::stop, "remote", std::move(text),
+                      fmt::format("{}; --ignore-remote goes on after a question", way)});
   }
 
   Result<void> look_at_inputs() {

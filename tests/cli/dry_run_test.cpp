@@ -9,6 +9,7 @@
 
 #include "can/trace.hpp"
 #include "cli/shell.hpp"
+#include "obeying.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -70,7 +71,8 @@ class DryRun : public testing::TestWithParam<std::string> {
     options.drive_folders = {fs::path(source_dir()) / "eds"};
     options.state_folder = dir_ / "state";
     options.clock = sim::SimBus::Clock::virtual_time;
-    options.defaults.bus = "sim:" + GetParam() + "@1" + fault;
+    options.defaults.bus = "sim:" + GetParam() + "@1" + obeying(GetParam());
+    if (!fault.empty()) options.defaults.bus += (obeying(GetParam()).empty() ? "?" : "&") + fault;
     options.defaults.drive = GetParam();
     options.defaults.yes = true;
     options.defaults.trace = dir_ / "trace.log";
@@ -202,7 +204,7 @@ TEST_P(DryRun, GoesByTheStateOfTheDrive) {
        {"mode 3 -n 1", "enable -n 1", "fault reset -n 1", "disable -n 1", "quick-stop -n 1",
         "pdo map TPDO1 0x6041 -n 1", "jog 30rpm --for 1s --turn 10000 -n 1", "home 35 --turn 10000 -n 1"})
     expect_true(line, enabled);
-  fault = "?fault=0x8250@1ms";
+  fault = "fault=0x8250@1ms";
   for (const auto* line : {"fault reset -n 1", "enable -n 1", "jog 30rpm --for 1s --turn 10000 -n 1"})
     expect_true(line, "nmt watch -n 1 --guard 1s --for 50ms");
 }

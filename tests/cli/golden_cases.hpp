@@ -12,6 +12,7 @@
 #include "base/printable.hpp"
 #include "cli/line_runner.hpp"
 #include "cli/shell.hpp"
+#include "obeying.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -31,7 +32,7 @@ inline GoldenCase golden_script(std::string name, const std::string& path, const
   constexpr std::string_view kRing = "coe:";
   const bool ring = where.starts_with(kRing);
   const auto family = ring ? where.substr(kRing.size()) : where;
-  const auto bus = (ring ? "coe:sim:" : "sim:") + family + "@1";
+  const auto bus = (ring ? "coe:sim:" : "sim:") + family + "@1" + obeying(family);
   GoldenCase out{std::move(name), {}};
   std::ifstream file(golden_source() / path);
   std::string line;

@@ -16,6 +16,7 @@
 #include "can/trace.hpp"
 #include "cli/batch/batch_command.hpp"
 #include "cli/shell.hpp"
+#include "obeying.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -173,7 +174,7 @@ class SampleLines {
     options.drive_folders = {fs::path(source_dir()) / "eds"};
     options.state_folder = dir_ / "state";
     options.clock = sim::SimBus::Clock::virtual_time;
-    options.defaults.bus = "sim:" + family_ + "@1," + family_ + "@2";
+    options.defaults.bus = "sim:" + family_ + "@1," + family_ + "@2" + obeying(family_);
     if (names_family) options.defaults.drive = family_;
     options.defaults.trace = dir_ / "trace.log";
     options.cancelled = [&, serves] { return serves && questions_left-- <= 0; };

@@ -15,6 +15,7 @@
 #include "cli/shell.hpp"
 #include "cli/words.hpp"
 #include "command/registry.hpp"
+#include "obeying.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -37,7 +38,7 @@ class WrongFamily : public testing::Test {
     Shell::Options options;
     options.drive_folders = {fs::path(source_dir()) / "eds"};
     options.clock = sim::SimBus::Clock::virtual_time;
-    options.defaults.bus = "sim:" + drive + "@1," + drive + "@2";
+    options.defaults.bus = "sim:" + drive + "@1," + drive + "@2" + obeying(drive);
     options.defaults.nodes = "1";
     options.defaults.drive = named;
     options.defaults.trace = folder_ / "trace";

@@ -73,7 +73,7 @@ TEST_F(GatewayServing, AClientRaisesNoAccessAlarmOnADrive) {
   EXPECT_TRUE(begins(ask("[1] 1 r 0x603F 0 u16\n"), "[1] ERROR:0x06020000 #"));
   EXPECT_TRUE(begins(ask("[2] 1 r 0x1018 7 u32\n"), "[2] ERROR:0x06090011 #"));
   EXPECT_TRUE(begins(ask("[3] 1 w 0x603F 0 u16 1\n"), "[3] ERROR:0x06020000 #"));
-  EXPECT_EQ(ask("[4] 1 r 0x6041 0 x16\n"), "[4] 0x0250\r\n") << "no fault";
+  EXPECT_EQ(ask("[4] 1 r 0x6041 0 x16\n"), "[4] 0x0050\r\n") << "no fault";
   EXPECT_TRUE(begins(ask("[5] 9 r 0x6041 0 x16\n"), "[5] ERROR:0x05040000 #")) << "nobody is there";
 }
 
