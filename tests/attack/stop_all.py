@@ -11,6 +11,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
+from checks import obeying
+
 servoctl, count = sys.argv[1], int(sys.argv[2])
 seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 rng = random.Random(seed)
@@ -57,7 +60,7 @@ def attack(number):
     batch, victim = rng.random() < 0.5, rng.choice(NODES)
     what = f"{family}, {'batch' if batch else 'pipe'}, {way}, node {victim} {trouble}"
     env = {**os.environ, "SERVOCTL_BUS": f"local:stop-all-{os.getpid()}-{number}", "SERVOCTL_DRIVE": family}
-    sims = {n: subprocess.Popen([servoctl, "sim", f"{family}@{n}"], env=env, stdout=subprocess.DEVNULL,
+    sims = {n: subprocess.Popen([servoctl, "sim", f"{family}@{n}{obeying(family)}"], env=env, stdout=subprocess.DEVNULL,
                                 stderr=subprocess.DEVNULL) for n in NODES}
     words = [servoctl, "run", "-"] if batch else [servoctl]
     log = tempfile.TemporaryFile("w+")

@@ -9,6 +9,9 @@ import subprocess
 import sys
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
+from checks import obeying
+
 servoctl, count = sys.argv[1], int(sys.argv[2])
 seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 rng = random.Random(seed)
@@ -45,7 +48,7 @@ def attack(number):
     family, gap, victim = rng.choice(list(FAMILIES)), rng.choice([0, 0, rng.uniform(0, 0.03)]), rng.randrange(2)
     what = f"{number}: {family}, {gap * 1000:.1f} ms apart, number {victim + 1} killed"
     env = {**os.environ, "SERVOCTL_BUS": f"local:two-masters-{os.getpid()}-{number}", "SERVOCTL_DRIVE": family}
-    sim = subprocess.Popen([servoctl, "sim", f"{family}@1,{family}@2"], env=env, stdout=subprocess.DEVNULL)
+    sim = subprocess.Popen([servoctl, "sim", f"{family}@1,{family}@2{obeying(family)}"], env=env, stdout=subprocess.DEVNULL)
     runs = []
     try:
         if not until(lambda: energised(env, 2) is False, 20):

@@ -12,6 +12,9 @@ import subprocess
 import sys
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
+from checks import obeying
+
 servoctl, count, seed = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]) if len(sys.argv) > 3 else 1
 LONGEST = 90  # Seconds that one command may take: homing gives up after 50.
 FAMILIES = {"cia402": 10000, "gsd600": 131072, "da200": 10000, "sv2": 0, "ts": 10000, "dm": 0}
@@ -145,7 +148,7 @@ def attack(n):
     kind, words = command(r)
     bus = f"local:values-{os.getpid()}-{n}"
     env = dict(os.environ, SERVOCTL_BUS=bus, SERVOCTL_NODE="1", SERVOCTL_DRIVE=family)
-    drive = subprocess.Popen([servoctl, "sim", f"{family}@1"], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    drive = subprocess.Popen([servoctl, "sim", f"{family}@1{obeying(family)}"], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def status():
         answer = subprocess.run([servoctl, "status", "--json"], env=env, capture_output=True)

@@ -11,6 +11,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
+from checks import obeying
+
 servoctl, count = os.path.abspath(sys.argv[1]), int(sys.argv[2])
 seed = int(sys.argv[3]) if len(sys.argv) > 3 else random.randrange(1 << 30)
 rng = random.Random(seed)
@@ -62,7 +65,7 @@ def attack(work):
     line = rng.choice(lines[command]).format(n=rng.randint(1, 9))
     trace, memory = os.path.join(work, "trace"), os.path.join(work, "memory-" + drive)
     how = rng.choice(["option", "environment", "prompt", "batch"])
-    words = ["-b", f"sim:{drive}@1,{drive}@2?state={memory}", "--trace", trace]
+    words = ["-b", f"sim:{drive}@1,{drive}@2?state={memory}" + obeying(drive).replace("?", "&"), "--trace", trace]
     if rng.random() < 0.2:
         line += " --dry-run"
     elif rng.random() < 0.9:

@@ -17,6 +17,13 @@ def check(what, condition):
         print("FAILED", what)
 
 
+def obeying(*families):
+    """What simulated drives of these families need to obey 6040h: as delivered, some select another source of commands."""
+    panel = {"da200": "P0.03=7", "ts": "Fn_00=20"}
+    needed = [panel[family] for family in dict.fromkeys(families) if family in panel]
+    return "?panel=" + ",".join(needed) if needed else ""
+
+
 def status(servoctl, env):
     """What `status` says of the drive; None while nobody answers."""
     answer = subprocess.run([servoctl, "status", "--json"], env=env, capture_output=True)

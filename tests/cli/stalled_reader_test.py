@@ -55,7 +55,7 @@ def check_documents(what, text):
     check(f"{what}: the result is there", documents[-1]["ok"] and documents[-1]["result"]["end"]["verified"])
 
 
-drive = subprocess.Popen([servoctl, "sim", "da200@1"], env=env, stdout=subprocess.DEVNULL)
+drive = subprocess.Popen([servoctl, "sim", "da200@1?panel=P0.03=7"], env=env, stdout=subprocess.DEVNULL)
 try:
     check("the drive answers", wait_until(False, 10))
 

@@ -48,7 +48,7 @@ def named(bus, *words, **more):
 
 
 for number, (first, second) in enumerate([("gsd600@1", "gsd600@1"), ("gsd600@1", "dm@1"), ("dm@1", "dm@1?delay=5ms"),
-                                          ("da200@1", "da200@1"), ("sv2@1", "ts@1")]):
+                                          ("da200@1?panel=P0.03=7", "da200@1?panel=P0.03=7"), ("sv2@1", "ts@1?panel=Fn_00=20")]):
     bus = f"local:two-nodes-{os.getpid()}-{number}"
     family = first.split("@")[0]
     what = f"{first} and {second}: "

@@ -75,7 +75,7 @@ check_holders() {
   is_up can0 || fail "can0 went down without a question"
   run bus up can0 --bitrate 500k; expect 8 '1 program of this machine receives'
   kill "$holder"; wait "$holder" 2>/dev/null
-  simulate ts@1
+  simulate 'ts@1?panel=Fn_00=20'
   for line in 'bus down can0' 'bus up can0 --bitrate 500k' 'bus detect can0'; do
     printf 'enable -n 1 -d ts --yes\n%s --yes\n' "$line" >"$work/held"
     out=$("$servoctl" --bus can0 <"$work/held" 2>&1); code=$?; checks=$((checks + 1))

@@ -52,7 +52,10 @@ check_link() {
 for family in da200 sv2 gsd600 dm ts; do
   turn=
   case $family in gsd600 | sv2) turn=131072 ;; da200 | ts) turn=10000 ;; esac
-  "$servoctl" sim "$family@1" --bus can1 >"$work/sim" 2>&1 &
+  # As delivered these two select another source of commands.
+  obeying=
+  case $family in da200) obeying='?panel=P0.03=7' ;; ts) obeying='?panel=Fn_00=20' ;; esac
+  "$servoctl" sim "$family@1$obeying" --bus can1 >"$work/sim" 2>&1 &
   sim=$!
   until_state "$family" '*' || fail "$family: the drive does not answer: $(cat "$work/sim")"
   for how in moment seconds bus-off; do

@@ -23,7 +23,10 @@ fail() {
 wait_for() { for _ in $(seq 200); do "$servoctl" status --json >/dev/null 2>&1 && return 0; sleep 0.05; done; return 1; }
 state() { "$servoctl" status --json | jq -r '.result[0] | "\(.energised) \(.state)"'; }
 
-"$servoctl" sim "$family@1" >"$work/sim" 2>&1 &
+# As delivered these two select another source of commands.
+obeying=
+case $family in da200) obeying='?panel=P0.03=7' ;; ts) obeying='?panel=Fn_00=20' ;; esac
+"$servoctl" sim "$family@1$obeying" >"$work/sim" 2>&1 &
 sim=$!
 wait_for || { cat "$work/sim"; echo "FAILED: the simulated drive does not answer"; exit 1; }
 
@@ -145,7 +148,7 @@ fi
 case $bus in
   vcan*)
     if ip link show can1 >/dev/null 2>&1; then
-      "$servoctl" sim "$family@1" --bus can1 >"$work/sim2" 2>&1 &
+      "$servoctl" sim "$family@1$obeying" --bus can1 >"$work/sim2" 2>&1 &
       sim2=$!
       SERVOCTL_BUS=can1 wait_for || fail "the drive on can1 does not answer: $(cat "$work/sim2")"
       SERVOCTL_BUS=can0 start_jog can1

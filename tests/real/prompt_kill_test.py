@@ -14,6 +14,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
+from checks import obeying
+
 servoctl = sys.argv[1]
 kills = int(sys.argv[2]) if len(sys.argv) > 2 else 10
 bus = sys.argv[3] if len(sys.argv) > 3 else f"local:prompt-kill-{os.getpid()}"
@@ -145,7 +148,7 @@ batch.flush()
 
 def serve():
     """The simulated drives, which have answered."""
-    process = subprocess.Popen([servoctl, "sim", f"{families[0]}@1,{families[1]}@2"], env=env, stdout=subprocess.DEVNULL, stderr=said)
+    process = subprocess.Popen([servoctl, "sim", f"{families[0]}@1,{families[1]}@2{obeying(*families)}"], env=env, stdout=subprocess.DEVNULL, stderr=said)
     end = time.monotonic() + 20
     while energised(1) is None and time.monotonic() < end:
         time.sleep(0.05)
