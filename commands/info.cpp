@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "command/command.hpp"
+#include "command/restarted_option.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/ethercat_network.hpp"
@@ -104,20 +105,26 @@ Error no_answer(session::Session& session, std::uint8_t node, std::span<const Er
   return drive_error(Errc::timeout, node, "no answer", "`scan` shows which nodes answer");
 }
 
-Result<report::Value> info_of_registers(Context& context) {
+Result<report::Value> info_of_registers(Context& context, bool restarted) {
   report::List out;
   for (const auto node : context.nodes) {
     auto told = show::register_info(context, node);
-    if (told)
-      out.push_back(std::move(*told));
-    else
+    if (!told) {
       context.errors.push_back(told.error());
+      continue;
+    }
+    (void)note_owed(context, node, restarted);
+    out.push_back(std::move(*told));
   }
   return report::Value(std::move(out));
 }
 
-Result<report::Value> run_info(Context& context, const Arguments&) {
-  if (context.session->modbus() != nullptr) return info_of_registers(context);
+constexpr Parameter kInfoParameters[] = {kRestartedOption};
+
+Result<report::Value> run_info(Context& context, const Arguments& arguments) {
+  const auto restarted = says_restarted(context, arguments);
+  if (!restarted) return fail(restarted.error());
+  if (context.session->modbus() != nullptr) return info_of_registers(context, *restarted);
   std::vector<Error> away;
   const auto families = drive::find_families(context.drive_folders);
   auto found =
@@ -142,6 +149,7 @@ Result<report::Value> run_info(Context& context, const Arguments&) {
       if (!right) context.errors.push_back(right.error());
       out.push_back(identity_record((*found)[at], families, std::span(answers).subspan(3 * at, 3),
                                     right ? context.profile : nullptr, context));
+      (void)note_owed(context, node, *restarted);
       ++at;
       continue;
     }
@@ -166,8 +174,9 @@ const Command kInfo{
     .details =
         "Reads device type, name, versions, identity, error register, heartbeat time and supported modes. If "
         "they contradict the family given with -d, it lists the families that fit and ends with exit code 8. On Modbus no "
-        "register says what a device is: with -d FAMILY it shows its main parameters, inputs and outputs.",
-    .parameters = {},
+        "register says what a device is: with -d FAMILY it shows its main parameters, inputs and outputs. Values that wait for "
+        "a restart are shown as by `status`, which does not work on Modbus; --restarted says that there was one.",
+    .parameters = kInfoParameters,
     .examples = kInfoExamples,
     .needs = Needs::node,
     .effect = Effect::reads,

@@ -4,10 +4,12 @@
 #include "base/text.hpp"
 #include "canopen/emergency.hpp"
 #include "command/command.hpp"
+#include "command/restarted_option.hpp"
 #include "drive/cia402.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_mode.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/other_axes.hpp"
 #include "session/answer.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/state_pause.hpp"
@@ -30,9 +32,7 @@ constexpr Parameter kStatusParameters[] = {
     {.name = "--long",
      .help = "every bit of the statusword, and more, in several lines a node",
      .kind = Kind::flag},
-    {.name = "--restarted",
-     .help = "the drive was restarted: nothing that was written before waits for a restart any more",
-     .kind = Kind::flag},
+    kRestartedOption,
 };
 
 constexpr ObjectAddress kObjects[] = {objects::kStatusword, objects::kModeDisplay, objects::kErrorCode,
@@ -180,7 +180,8 @@ void add_al_state(Record& out, const session::EtherCatNetwork& ring, std::uint8_
     out.push_back({"process_data", Value(), Show::json});
 }
 
-Record status_record(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
+Record status_record(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers,
+                     bool restarted) {
   Record out{{"node", node}};
   if (const auto* ring = context.session->ethercat())
     add_al_state(out, *ring, node);
@@ -188,10 +189,7 @@ Record status_record(Context& context, std::uint8_t node, std::span<const Result
     add_nmt_state(out, context, node, answers);
   add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
-  // What the drive has stored, and does not go by yet.
-  const auto owed = show::owed_restart(*context.session, context.state_folder, node);
-  if (auto notice = show::owed_notice(context, node, owed); !notice.empty())
-    context.notices.push_back(std::move(notice));
+  const auto owed = note_owed(context, node, restarted);
   if (!owed.values.empty())
     out.push_back({"restart_owed", show::owed_records(context.profile, owed.values), Show::json});
   return out;
@@ -237,10 +235,8 @@ List overview_row(const Context& context, std::uint8_t node, std::span<const Res
 }
 
 Result<report::Value> run_status(Context& context, const Arguments& arguments) {
-  const bool restarted = arguments.has("--restarted") && !context.dry_run;
-  if (restarted && context.read_only)
-    return fail(Errc::refused, "--restarted changes what servoctl remembers, and --read-only forbids it",
-                "leave one of them out");
+  const auto restarted = says_restarted(context, arguments);
+  if (!restarted) return fail(restarted.error());
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes)
     for (std::size_t i = 0; i < kCount; ++i)
@@ -256,13 +252,14 @@ Result<report::Value> run_status(Context& context, const Arguments& arguments) {
     if (refused)
       context.notices.push_back(
           fmt::format("node {} has no statusword: it is not a CiA 402 drive", context.nodes[i]));
-    if (restarted && (mine[0] || refused))
-      show::OwedRestartFile(context.state_folder, context.session->url(), context.nodes[i]).remove();
     if (!mine[0] && !refused) {
       context.errors.push_back(mine[0].error());
       continue;
     }
-    out.documents.emplace_back(status_record(context, context.nodes[i], mine));
+    out.documents.emplace_back(status_record(context, context.nodes[i], mine, *restarted));
+    if (const auto others = motion::other_axes(*context.session, context.profile, context.nodes[i]);
+        !others.empty())
+      context.notices.push_back(fmt::format("node {}: {}", context.nodes[i], motion::axes_text(others)));
     out.rows.push_back(overview_row(context, context.nodes[i], mine));
   }
   out.json_only = out.rows.empty();

@@ -119,8 +119,9 @@ class Preflight {
     constexpr std::string_view kLead = "statusword bit 9 (remote) is 0";
     const auto source = other_source(*session_, units_->profile(), node_);
     const auto start = power.start_command();
-    auto text = source.is_known() ? fmt::format("{}: {}", kLead, source.cause)
-                                  : fmt::format("{}, the drive may not obey the bus: {}", kLead, kRemoteCauses);
+    auto text = source.is_known()
+                    ? fmt::format("{}: {}", kLead, source.cause)
+                    : fmt::format("{}, the drive may not obey the bus: {}", kLead, kRemoteCauses);
     if (!source.is_known() && !start.empty()) text += "; or it sets the bit in the state operational only";
     if (request_.ignores_remote) {
       add(Weight::caution, "remote", std::move(text));

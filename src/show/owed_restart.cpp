@@ -188,26 +188,27 @@ std::string owed_notice(const Desk& desk, std::uint8_t node, const OwedRestart& 
   if (owed.values.empty()) return {};
   const auto what = owed_text(desk.profile, node, owed.values, desk.speaks_chinese());
   const bool kept = std::ranges::all_of(owed.values, &OwedValue::kept);
+  const auto says = desk.session->modbus() == nullptr ? "status" : "info";
   if (desk.session->can() != nullptr && !owed.by_power)
     return kept
                ? fmt::format(
                      "node {0}: stored, in force after a restart: {1}; `nmt reset -n {0} --wait` restarts it, "
-                     "`status --restarted -n {0}` says that it was",
-                     node, what)
+                     "`{2} --restarted -n {0}` says that it was",
+                     node, what, says)
                : fmt::format(
                      "node {0}: written, in force after a restart, which may lose it unless it is stored first "
-                     "(`store`): {1}; `nmt reset -n {0} --wait` restarts it, `status --restarted -n {0}` says "
+                     "(`store`): {1}; `nmt reset -n {0} --wait` restarts it, `{2} --restarted -n {0}` says "
                      "that it was",
-                     node, what);
+                     node, what, says);
   return kept
              ? fmt::format(
                    "node {0}: stored, in force after a restart: {1}; switch it off and on, then "
-                   "`status --restarted -n {0}`",
-                   node, what)
+                   "`{2} --restarted -n {0}`",
+                   node, what, says)
              : fmt::format(
                    "node {0}: written, in force after a restart, which may lose it unless it is stored first "
-                   "(`store`): {1}; switch it off and on, then `status --restarted -n {0}`",
-                   node, what);
+                   "(`store`): {1}; switch it off and on, then `{2} --restarted -n {0}`",
+                   node, what, says);
 }
 
 }  // namespace servoctl::show

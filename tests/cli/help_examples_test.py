@@ -14,6 +14,8 @@ import subprocess
 import sys
 import tempfile
 
+from checks import obeying
+
 servoctl, source = os.path.abspath(sys.argv[1]), os.path.abspath(sys.argv[2])
 WIDEST = 76  # Columns of a line; two more stand before it.
 
@@ -122,7 +124,7 @@ def on_simulated_drives(line, folder):
     family = re.search(r" -d (gsd600|dm|da200|ts|sv2)\b", line)
     family = family.group(1) if family else "gsd600"
     drives = ",".join(f"{family}@{node}" for node in range(1, 6))
-    bus = next((url for begin, url in BUSES.items() if line.startswith(begin)), f"sim:{drives}")
+    bus = next((url for begin, url in BUSES.items() if line.startswith(begin)), f"sim:{drives}{obeying(family)}")
     line = re.sub(r"(-b|^bus) can0\b", rf"\1 {bus}", line)
     line = re.sub(r"coe:eth0\b", "coe:sim:sv2@1,sv2@2", line)
     line = re.sub(r"modbus:/dev/\S+", "modbus:sim:ts@5", line)

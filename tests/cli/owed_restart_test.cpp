@@ -46,6 +46,18 @@ TEST_F(OwedRestart, AWriteThatWaitsIsShownUntilTheRestartIsSeen) {
   EXPECT_FALSE(owes(kDrive)) << all();
 }
 
+TEST_F(OwedRestart, OverModbusInfoShowsItAndEndsIt) {
+  constexpr const char* kModbus = "-n 1 -d ts -b modbus:sim:ts@1";
+  ASSERT_EQ(run(fmt::format("param set Fn_00=20 --unlock --keep {}", kModbus)), 0) << all();
+  EXPECT_EQ(run(fmt::format("info {}", kModbus)), 0) << all();
+  EXPECT_TRUE(says("node 1: stored, in force after a restart: Fn_00 = 20")) << all();
+  EXPECT_TRUE(says("`info --restarted -n 1")) << all();
+  EXPECT_EQ(run(fmt::format("info --restarted --read-only {}", kModbus)), 8) << all();
+  EXPECT_EQ(run(fmt::format("info --restarted {}", kModbus)), 0) << all();
+  EXPECT_EQ(run(fmt::format("info {}", kModbus)), 0) << all();
+  EXPECT_FALSE(says("in force after a restart")) << all();
+}
+
 TEST_F(OwedRestart, TheOldValueWrittenAgainEndsIt) {
   ASSERT_EQ(run(fmt::format("param set Pn0601=0 {}", kDrive)), 0) << all();
   EXPECT_TRUE(owes(kDrive)) << all();

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "command/command.hpp"
+#include "show/owed_restart.hpp"
+
+namespace servoctl::command {
+
+/// Of the commands that show what waits for a restart.
+inline constexpr Parameter kRestartedOption{
+    .name = "--restarted",
+    .help = "the drive was restarted: nothing that was written before waits for a restart any more",
+    .kind = Kind::flag};
+
+/// Whether the line says so. Errc::refused with --read-only: it changes what servoctl remembers. A dry run
+/// changes nothing.
+Result<bool> says_restarted(const Context& context, const Arguments& arguments);
+
+/// What of a node waits for a restart, with a notice of it; first nothing is left of that if it was
+/// restarted.
+show::OwedRestart note_owed(Context& context, std::uint8_t node, bool restarted);
+
+}  // namespace servoctl::command
