@@ -58,7 +58,8 @@ void SdoServer::on_download_initiate(const can::Frame& frame, TimePoint now) {
   const std::uint8_t command = frame.data[0];
   const bool size_indicated = (command & 0x01U) != 0;
   if ((command & 0x02U) != 0) {
-    const std::size_t size = size_indicated ? 4U - (command >> 2U & 0x03U) : 4U;
+    const std::size_t announced = size_indicated ? 4U - (command >> 2U & 0x03U) : 4U;
+    const auto size = std::min<std::size_t>(store_->expedited_size(object, announced), 4U);
     const auto code = store_->write(object, ByteSpan(frame.data).subspan(4, size));
     if (code != 0) return abort(object, code);
     tx_ = sdo_frame(kSdoAnswer + node_, 0x60, object, options_.echo ? sdo_data(frame) : 0);

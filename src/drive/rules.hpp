@@ -70,6 +70,9 @@ struct SdoRules {
   bool block = true;  ///< Needs `segmented`.
   bool exact_length = true;
   bool echoes_data = false;  ///< The acknowledge of a write carries its data.
+  /// Objects of which the drive takes the bytes of an expedited download in their own size, although its
+  /// command announces fewer.
+  std::vector<ObjectAddress> short_writes;
 };
 
 struct NmtRules {
@@ -95,8 +98,9 @@ struct PdoRules {
   std::uint32_t cob_id_bits = 0xFFFF'FFFF;  ///< Bits of the COB-ID that may change.
   When parameters = When::always;           ///< When transmission type and times may change.
   When mapping = When::always;
-  bool clears_entries = false;    ///< Count 0 clears the entries as well.
-  bool disable_by_count = false;  ///< The mapping is opened by count 0 alone; the COB-ID stays valid.
+  bool inhibit_while_valid = false;  ///< The inhibit time may change while the PDO is valid.
+  bool clears_entries = false;       ///< Count 0 clears the entries as well.
+  bool disable_by_count = false;     ///< The mapping is opened by count 0 alone; the COB-ID stays valid.
   std::uint8_t most_entries = 64;
   std::uint16_t most_bits = 64;
   bool whole_bytes = false;
@@ -204,6 +208,10 @@ struct MotionRules {
   std::vector<std::string> speed_limit;      ///< What limits the speed in torque mode.
   std::optional<std::uint32_t> setpoints;    ///< Targets the drive can hold.
   std::vector<PowerParameter> without_controlword;
+  std::string speed_monitor;  ///< Parameter that shows the speed of the motor in rpm.
+  /// Where it has two values, least and greatest: in interpolated position the drive takes 60C1h:01 at each
+  /// SYNC, by a synchronous RPDO only, and moves there in the period of 60C2h, limited to these milliseconds.
+  std::vector<std::uint16_t> interpolation_ms;
 };
 
 /// How an emergency message names the alarm of the panel.

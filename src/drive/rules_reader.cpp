@@ -54,6 +54,11 @@ bool get(const toml::node& node, EscArea& out) {
   return true;
 }
 
+/// `[least, greatest]`, neither of them 0.
+bool get_range(const toml::node& node, std::vector<std::uint16_t>& out) {
+  return drive::get(node, out) && out.size() == 2 && out[0] != 0 && out[0] <= out[1];
+}
+
 bool get(const toml::node& node, PdoRules::When& out) {
   std::string text;
   if (!drive::get(node, text)) return false;
@@ -121,7 +126,8 @@ Result<void> read_sdo(const TableReader& reader, Rules& rules) {
   return reader.read({{"segmented", into(rules.sdo.segmented)},
                       {"block", into(rules.sdo.block)},
                       {"exact_length", into(rules.sdo.exact_length)},
-                      {"echoes_data", into(rules.sdo.echoes_data)}});
+                      {"echoes_data", into(rules.sdo.echoes_data)},
+                      {"short_writes", into(rules.sdo.short_writes)}});
 }
 
 Result<void> read_nmt(const TableReader& reader, Rules& rules) {
@@ -156,6 +162,7 @@ Result<void> read_pdo(const TableReader& reader, Rules& rules) {
   return reader.read({{"cob_id_bits", into(out.cob_id_bits)},
                       {"parameters", [&](const auto& n) { return get(n, out.parameters); }},
                       {"mapping", [&](const auto& n) { return get(n, out.mapping); }},
+                      {"inhibit_while_valid", into(out.inhibit_while_valid)},
                       {"disable_by_count", into(out.disable_by_count)},
                       {"clears_entries", into(out.clears_entries)},
                       {"most_entries", into(out.most_entries)},
@@ -242,6 +249,8 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
        {"homed_bit", into(out.homed_bit)},
        {"halt", into(out.halt)},
        {"handshake", into(out.handshake)},
+       {"speed_monitor", into(out.speed_monitor)},
+       {"interpolation_ms", [&](const auto& n) { return get_range(n, out.interpolation_ms); }},
        {"position_speed", into(out.position_speed)},
        {"rated_speed", into(out.rated_speed)},
        {"rated_torque", into(out.rated_torque)},

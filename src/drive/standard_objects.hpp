@@ -50,6 +50,8 @@ inline constexpr ObjectAddress kPositionActual{0x6064, 0};
 inline constexpr ObjectAddress kFollowingErrorWindow{0x6065, 0};
 inline constexpr ObjectAddress kFollowingErrorTime{0x6066, 0};  ///< ms.
 inline constexpr ObjectAddress kPositionWindow{0x6067, 0};
+inline constexpr ObjectAddress kVelocitySensor{0x6069, 0};
+inline constexpr ObjectAddress kVelocityDemand{0x606B, 0};
 inline constexpr ObjectAddress kVelocityActual{0x606C, 0};
 inline constexpr ObjectAddress kTorqueActual{0x6077, 0};
 inline constexpr ObjectAddress kSupplyVoltage{0x6079, 0};  ///< DC link, mV.
@@ -71,6 +73,8 @@ inline constexpr ObjectAddress kMaxTorque{0x6072, 0};
 inline constexpr ObjectAddress kTorqueSlope{0x6087, 0};
 
 inline constexpr ObjectAddress kInterpolationPoint{0x60C1, 1};
+inline constexpr ObjectAddress kInterpolationPeriod{0x60C2, 1};
+inline constexpr ObjectAddress kInterpolationIndex{0x60C2, 2};  ///< Power of ten of its unit, the second.
 inline constexpr ObjectAddress kMaxSlippage{0x60F8, 0};
 
 inline constexpr ObjectAddress kHomeOffset{0x607C, 0};

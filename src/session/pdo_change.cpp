@@ -79,6 +79,7 @@ class Change {
       }
     auto by_count = profile_ == nullptr ? drive::Profile{} : *profile_;
     by_count.rules.pdo.disable_by_count = true;
+    by_count.rules.pdo.inhibit_while_valid = true;  // The COB-ID cannot be written.
     auto out = restore(*session_, way.by_count ? &by_count : profile_, node_, *present_, *wanted_, options_);
     // What a node refused in the state it was in, and answers otherwise now, it refused as operational.
     if (refused_state_ && (!out.failure || out.failure->abort_code != canopen::sdo_abort::kDeviceState))

@@ -24,20 +24,26 @@ std::optional<std::uint16_t> block_of(std::uint16_t index) {
   return canopen::Pdo{place->direction, place->number}.communication_index();
 }
 
+/// What can change while a PDO is valid.
+struct WhileValid {
+  bool mapping = false;  ///< Opened by its count; the COB-ID stays as it is where it does not change.
+  bool inhibit = false;  ///< The inhibit time.
+};
+
 /// The writes of one PDO, or of one assignment.
 class BlockPlan {
  public:
-  /// `by_count`: a mapping is opened by its count, and the COB-ID stays as it is where it does not change.
-  BlockPlan(bool by_count, const Values& present, const Values& wanted, std::uint16_t block)
-      : by_count_(by_count),
-        present_(&present),
+  BlockPlan(const WhileValid& may, const Values& present, const Values& wanted, std::uint16_t block)
+      : present_(&present),
         wanted_(&wanted),
         cob_id_{block, 1},
         list_(is_assignment(block) ? block : static_cast<std::uint16_t>(block + 0x200)) {
     const bool has_cob_id = list_ != block && has(cob_id_);
     if (has_cob_id) now_ = present.at(cob_id_);
     const bool valid = has_cob_id && (number(present, cob_id_) & canopen::kPdoInvalid) == 0;
-    if (valid && (!by_count_ || differs(cob_id_)))
+    const auto place = canopen::pdo_at(block);
+    const bool inhibit = place && place->direction == canopen::PdoDirection::transmit && differs({block, 3});
+    if (valid && (!may.mapping || differs(cob_id_) || (inhibit && !may.inhibit)))
       now_ = store_le(number(present, cob_id_) | canopen::kPdoInvalid, 4);
   }
 
@@ -79,7 +85,6 @@ class BlockPlan {
     if (used != 0) out.push_back({count, wanted_->at(count)});
   }
 
-  bool by_count_;
   const Values* present_;
   const Values* wanted_;
   ObjectAddress cob_id_;
@@ -126,8 +131,8 @@ class Order {
 
 /// `in_order` puts the writes of communication objects in theirs.
 template <class InOrder>
-std::vector<PlannedWrite> plan(const Order& order, bool by_count, const Values& present, const Values& wanted,
-                               const InOrder& in_order) {
+std::vector<PlannedWrite> plan(const Order& order, const WhileValid& may, const Values& present,
+                               const Values& wanted, const InOrder& in_order) {
   std::vector<PlannedWrite> out;
   std::set<std::uint16_t> blocks;
   for (const auto& [object, data] : wanted) {
@@ -147,7 +152,7 @@ std::vector<PlannedWrite> plan(const Order& order, bool by_count, const Values& 
     return order.step_of(write.object) > Step::pdo;
   });
   std::vector<BlockPlan> plans;
-  for (const auto block : blocks) plans.emplace_back(by_count, present, wanted, block);
+  for (const auto block : blocks) plans.emplace_back(may, present, wanted, block);
   std::vector<PlannedWrite> pdos;
   add_blocks(plans, pdos);
   out.insert(behind, pdos.begin(), pdos.end());
@@ -174,15 +179,16 @@ Bytes any_before(const Values& wanted, ObjectAddress object, const Bytes& data) 
 
 std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
                                       const Values& wanted) {
-  const bool by_count = profile != nullptr && profile->rules.pdo.disable_by_count;
-  return plan(Order(profile), by_count, present, wanted,
+  WhileValid may;
+  if (profile != nullptr) may = {profile->rules.pdo.disable_by_count, profile->rules.pdo.inhibit_while_valid};
+  return plan(Order(profile), may, present, wanted,
               [&](auto writes) { return in_allowed_order(std::move(writes), present); });
 }
 
 std::vector<PlannedWrite> plan_writes_for_any_drive(const Values& wanted) {
   Values present;
   for (const auto& [object, data] : wanted) present.emplace(object, any_before(wanted, object, data));
-  auto out = plan(Order(nullptr), false, present, wanted,
+  auto out = plan(Order(nullptr), {}, present, wanted,
                   [](auto writes) { return in_order_for_any_drive(std::move(writes)); });
   // A COB-ID that stands alone belongs to no procedure.
   for (const auto& [object, data] : wanted) {

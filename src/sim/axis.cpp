@@ -64,6 +64,7 @@ void Axis::on_controlword(std::uint16_t controlword, Drive drive, TimePoint now)
   const bool rising = (controlword & kNewSetpoint) != 0 && (controlword_ & kNewSetpoint) == 0;
   const bool low = (controlword & kNewSetpoint) == 0;
   controlword_ = controlword;
+  if (drive != Drive::obeying || low) point_.reset();
   if (drive != Drive::obeying) {
     target_.reset();
     waiting_.clear();

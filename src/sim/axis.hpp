@@ -36,7 +36,8 @@ class Axis {
         values_(&values),
         switch_rules_(find_switch_rules()),
         encoder_(find_encoder()),
-        speed_monitor_(find_speed_monitor()) {}
+        speed_monitor_(find_speed_monitor()),
+        own_counts_(default_counts()) {}
 
   /// What the power stage lets it do.
   enum class Drive : std::uint8_t {
@@ -49,6 +50,8 @@ class Axis {
   void reset(TimePoint now);
   /// A controlword, after the power stage has taken it.
   void on_controlword(std::uint16_t controlword, Drive drive, TimePoint now);
+  /// Interpolated position, where the family takes its points at SYNC: 60C1h:01 is the next one.
+  void take_point();
   /// Lets time pass and puts position, speed and torque into their objects.
   void advance(Drive drive, TimePoint now);
   /// From now on Drive::stopping slows down by this object's ramp, or by drive::kMostTorque. The time that
@@ -65,7 +68,9 @@ class Axis {
   bool has_following_error() const { return following_error_; }
   void clear_error() { following_error_ = false; }
   AxisFaults& faults() { return faults_; }
-  /// Counts per revolution that no object gives: where the family's rules say `learned`.
+  /// Whether no object gives the counts per revolution: the family's rules say `learned`, or nothing.
+  bool has_own_counts() const;
+  /// Counts per revolution where has_own_counts().
   double& own_counts() {
     shown_.reset();
     return own_counts_;
@@ -112,9 +117,13 @@ class Axis {
   double rated_torque() const;
   double most_torque() const;
   void step_position(double seconds);
+  bool interpolates_at_sync() const { return profile_->rules.motion.interpolation_ms.size() == 2; }
+  void step_to_point(double seconds);
+  Duration interpolation_period() const;
   /// Where it follows a position at once, without set-points: the object; empty where it does not.
   std::optional<ObjectAddress> followed() const;
   void follow();
+  void follow_point();
   Range limits() const;
   double allowed(double wanted) const;
   bool is_at_limit() const;
@@ -152,6 +161,8 @@ class Axis {
   ObjectAddress find_encoder() const;
   std::optional<ObjectAddress> find_speed_monitor() const;
   double per_turn(drive::Measure measure) const;
+  bool states_no_counts() const;  ///< Neither its data nor an object gives the counts of a turn.
+  double default_counts() const;
   double units_per_turn() const;
   double fastest_by_torque() const;                 ///< What the family's limits leave in torque mode.
   ObjectAddress speed_object() const;               ///< Holds the speed of a move to a position.
@@ -192,8 +203,10 @@ class Axis {
   bool following_error_ = false;
   AxisFaults faults_;
   Track track_;
-  double own_counts_ = 131072;
-  std::optional<Shown> shown_;  ///< When the objects were last written; empty where they have to be.
+  double own_counts_;
+  std::optional<double> point_;  ///< The last one taken at SYNC since bit 4 was set.
+  TimePoint point_due_{};        ///< When it is to be reached.
+  std::optional<Shown> shown_;   ///< When the objects were last written; empty where they have to be.
   mutable std::unordered_map<ObjectAddress, drive::Meaning> meanings_;  ///< Those asked for so far.
 };
 

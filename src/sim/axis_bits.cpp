@@ -96,6 +96,11 @@ void Axis::publish(double here) {
     if (track_.is_pressed(input, here)) inputs ^= 1U << motion.inputs[static_cast<std::size_t>(input)];
   values_->set_number(objects::kDigitalInputs, inputs);
   write(objects::kVelocityActual, turning() / speed_factor(objects::kVelocityActual));
+  const bool pulses = meaning_of(objects::kVelocitySensor).unit == "pulse/s";
+  write(objects::kVelocitySensor,
+        pulses ? turning() / units_per_turn() * per_turn(drive::Measure::pulses_per_turn)
+               : turning() / speed_factor(objects::kVelocitySensor));
+  write(objects::kVelocityDemand, velocity_ / speed_factor(objects::kVelocityDemand));
   if (speed_monitor_) write(*speed_monitor_, turning() / units_per_turn() * 60);
   write(objects::kTorqueActual, torque_);
   write(objects::kFollowingError, behind_ + turning() * faults_.lag);

@@ -37,10 +37,38 @@ std::optional<ObjectAddress> Axis::followed() const {
 void Axis::follow() {
   const auto object = followed();
   if (!object) return;
+  if (kind() == Kind::interpolated && interpolates_at_sync()) return follow_point();
   const auto [least, greatest] = limits();
   const double target = std::clamp(read(*object), least, greatest);
   target_.reset();
   if (target != position_ && (kind() != Kind::interpolated || is_active())) target_ = target;
+}
+
+/// At a point after which none has come the motor stands: it is where it was told to be.
+void Axis::follow_point() {
+  target_.reset();
+  if (!point_ || !is_active()) return;
+  const auto [least, greatest] = limits();
+  const double target = std::clamp(*point_, least, greatest);
+  if (target == position_)
+    velocity_ = 0;
+  else
+    target_ = target;
+}
+
+void Axis::take_point() {
+  if (kind() != Kind::interpolated || !interpolates_at_sync() || !is_active()) return;
+  point_ = read(objects::kInterpolationPoint);
+  point_due_ = time_ + interpolation_period();
+}
+
+/// 60C2h: value by power of ten, in seconds.
+Duration Axis::interpolation_period() const {
+  const auto& limits = profile_->rules.motion.interpolation_ms;
+  const double ms =
+      read(objects::kInterpolationPeriod) * std::pow(10, read(objects::kInterpolationIndex) + 3);
+  const double taken = std::clamp<double>(ms, limits.front(), limits.back());
+  return std::chrono::microseconds(std::llround(taken * 1000));
 }
 
 /// What 607Dh leaves, where it acts. Limits that leave nothing are none.
@@ -111,6 +139,9 @@ bool Axis::is_steady() const {
 
 void Axis::step(double seconds) {
   if (drive_ == Drive::obeying && kind() == Kind::homing) return home(seconds);
+  if (drive_ == Drive::obeying && kind() == Kind::interpolated && interpolates_at_sync() && target_ &&
+      !is_halted())
+    return step_to_point(seconds);
   drive_ == Drive::obeying ? obey(seconds) : approach(0, seconds);
   const auto [least, greatest] = limits();
   const bool inside = position_ >= least && position_ <= greatest;
@@ -182,6 +213,18 @@ double Axis::most_torque() const {
   const double limit = read(objects::kMaxTorque);
   const double factory = kFactoryTorque * rated_torque();
   return limit > 0 ? std::min(limit, factory) : factory;
+}
+
+/// Evenly to the point, in what is left of the period; the course is the master's, and so are its ramps.
+void Axis::step_to_point(double seconds) {
+  const double left = *target_ - position_;
+  const double time = std::max(std::chrono::duration<double>(point_due_ - time_).count(), seconds);
+  velocity_ = allowed(left) == 0 ? 0 : left / time;
+  const bool arrives = velocity_ != 0 && time <= seconds && !faults_.stalled && !faults_.reversed;
+  if (arrives)
+    position_ = *target_;
+  else
+    travel(seconds);
 }
 
 void Axis::step_position(double seconds) {

@@ -13,6 +13,8 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 /// Where the manual does not tell the counts of a turn, or the factory has left them at one.
 constexpr double kAssumedTurn = 10000;
+/// Where they can only be measured: 17 bits.
+constexpr double kLearnedTurn = 131072;
 /// Speed that ramps given as a time lead to.
 constexpr double kRampSpeedRpm = 3000;
 constexpr double kNoRamp = 1e12;
@@ -67,10 +69,23 @@ ObjectAddress Axis::find_encoder() const {
 }
 
 std::optional<ObjectAddress> Axis::find_speed_monitor() const {
-  const auto& name = profile_->rules.learn.speed;
+  const auto& shown = profile_->rules.motion.speed_monitor;
+  const auto& name = shown.empty() ? profile_->rules.learn.speed : shown;
   const auto target = drive::resolve(profile_, name);
   return !name.empty() && target ? std::optional(target->address) : std::nullopt;
 }
+
+bool Axis::states_no_counts() const {
+  return profile_->rules.units.count(drive::Measure::increments_per_turn) == 0;
+}
+
+bool Axis::has_own_counts() const {
+  if (states_no_counts()) return meaning_of(objects::kPositionActual).unit != "rad";
+  const auto& ways = profile_->rules.units.at(drive::Measure::increments_per_turn);
+  return std::any_of(ways.begin(), ways.end(), [](const auto& way) { return way.learned; });
+}
+
+double Axis::default_counts() const { return states_no_counts() ? kAssumedTurn : kLearnedTurn; }
 
 double Axis::units_per_turn() const {
   if (meaning_of(objects::kPositionActual).unit == "rad") return 2 * kPi;
@@ -79,7 +94,7 @@ double Axis::units_per_turn() const {
 
 double Axis::per_turn(drive::Measure measure) const {
   const auto rule = profile_->rules.units.find(measure);
-  if (rule == profile_->rules.units.end()) return kAssumedTurn;
+  if (rule == profile_->rules.units.end()) return states_no_counts() ? own_counts_ : kAssumedTurn;
   const auto& ways = rule->second;
   const auto holds = [&](const drive::Quotient& way) {
     return std::all_of(way.when.begin(), way.when.end(), [&](const drive::Quotient::When& condition) {

@@ -56,6 +56,7 @@ void CanPort::on_frame(const can::Frame& frame, TimePoint now) {
   on_error_control(frame, now);
   if (nmt_ == NmtState::stopped) return;  // CiA 301, table 39: no SDO in this state.
   pdos_.on_frame(frame, now);
+  if (pdos_.take_synchronous(objects::kInterpolationPoint)) model_->take_interpolation_point();
   collect_pdos(now);
   server_.on_frame(frame, now);
   collect_answers(now);

@@ -67,20 +67,13 @@ Result<bool> plan_fault(const CellSpec& spec, std::string_view text, std::span<D
   return true;
 }
 
-/// Whether a turn of its motor has counts that no object tells.
-bool has_own_counts(const drive::Profile& profile) {
-  const auto ways = profile.rules.units.find(drive::Measure::increments_per_turn);
-  return ways != profile.rules.units.end() &&
-         std::any_of(ways->second.begin(), ways->second.end(), [](const auto& way) { return way.learned; });
-}
-
 Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<DriveModel* const> drives) {
   const auto counts = parse_digits(text, 10);
   if (!counts || *counts < 2)
     return spec.wrong(fmt::format("'counts={}': counts per revolution must be 2 or more", text));
   bool taken = false;
   for (auto* drive : drives) {
-    if (!has_own_counts(drive->profile())) continue;
+    if (!drive->has_own_counts()) continue;
     drive->own_counts() = static_cast<double>(*counts);
     taken = true;
   }

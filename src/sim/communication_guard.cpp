@@ -40,11 +40,10 @@ std::uint32_t CommunicationGuard::check(ObjectAddress object, ByteSpan data) con
   return 0;
 }
 
-/// 1012h: bit 31, the drive takes TIME; its CAN-ID stays while it does.
+/// 1012h: bit 31, the drive takes TIME; its CAN-ID stays while it does. It is that of NMT in no case.
 std::uint32_t CommunicationGuard::check_time(std::uint32_t cob_id) const {
   if ((cob_id & kProduces) != 0) return abort::kRange;
   const bool used = (cob_id & kBit31) != 0;
-  if (!used && (cob_id & ~kBit31) == 0) return 0;
   const auto now = static_cast<std::uint32_t>(values_->number(objects::kTimeCobId));
   const bool stays = used && (now & kBit31) != 0;
   return stays && cob_id != now ? abort::kRange : check_can_id(cob_id);

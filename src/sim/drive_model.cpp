@@ -93,6 +93,11 @@ void DriveModel::set_operational(bool operational) {
   operational_ = operational;
 }
 
+void DriveModel::take_interpolation_point() {
+  move_axis();
+  axis_.take_point();
+}
+
 void DriveModel::on_time(TimePoint now) {
   now_ = now;
   move_axis();

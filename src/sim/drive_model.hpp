@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -75,6 +76,8 @@ class DriveModel final : public canopen::ObjectStore {
   void reset_communication(TimePoint now);
   /// Whether process data are exchanged. Some families take away the power when that ends.
   void set_operational(bool operational);
+  /// A synchronous RPDO has brought 60C1h:01, and its SYNC has come.
+  void take_interpolation_point();
   /// The master that is watched has fallen silent: what 6007h says, a fault where there is none; the
   /// emergency has this code.
   void on_master_lost(std::uint16_t code, TimePoint now);
@@ -87,6 +90,7 @@ class DriveModel final : public canopen::ObjectStore {
 
   std::uint32_t read(ObjectAddress object, Bytes& out) override;
   std::uint32_t check_writable(ObjectAddress object) override;
+  std::size_t expedited_size(ObjectAddress object, std::size_t announced) override;
   std::uint32_t write(ObjectAddress object, ByteSpan data) override;
 
   /// The drive detects an error: emergency, history, fault reaction.
@@ -109,7 +113,8 @@ class DriveModel final : public canopen::ObjectStore {
   Track& track() { return axis_.track(); }
   /// As Axis::panel().
   std::map<std::string, std::int64_t, std::less<>>& panel() { return axis_.panel(); }
-  /// As Axis::own_counts().
+  /// As in Axis.
+  bool has_own_counts() const { return axis_.has_own_counts(); }
   double& own_counts() { return axis_.own_counts(); }
 
   const drive::Profile& profile() const { return *profile_; }
@@ -144,6 +149,7 @@ class DriveModel final : public canopen::ObjectStore {
   void after_write(ObjectAddress object, ByteSpan data);
   void on_controlword(std::uint16_t controlword);
   bool feigns(std::uint16_t controlword);
+  Bytes taken_period(ByteSpan data) const;
   std::uint32_t write_command(ObjectAddress object, ByteSpan data, bool& handled);
   std::uint32_t save_objects(std::uint8_t group);
   std::uint32_t restore_objects(std::uint8_t group);

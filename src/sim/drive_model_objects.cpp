@@ -92,7 +92,26 @@ std::uint32_t DriveModel::check_writable(ObjectAddress object) {
   return code;
 }
 
+std::size_t DriveModel::expedited_size(ObjectAddress object, std::size_t announced) {
+  const auto& taken = profile_->rules.sdo.short_writes;
+  const auto* entry = profile_->dictionary.find(object);
+  if (entry == nullptr || std::find(taken.begin(), taken.end(), object) == taken.end()) return announced;
+  return std::max(announced, od::size_of(entry->type).value_or(announced));
+}
+
+/// 60C2h:01 where its period has limits: a value outside them is taken as the nearest one.
+Bytes DriveModel::taken_period(ByteSpan data) const {
+  const auto& limits = profile_->rules.motion.interpolation_ms;
+  return store_le(std::clamp<std::uint64_t>(load_le(data), limits.front(), limits.back()), data.size());
+}
+
 std::uint32_t DriveModel::write(ObjectAddress object, ByteSpan data) {
+  Bytes taken;
+  if (object == objects::kInterpolationPeriod && !profile_->rules.motion.interpolation_ms.empty() &&
+      !data.empty() && data.size() <= 8) {
+    taken = taken_period(data);
+    data = taken;
+  }
   if (misbehaviour_.missing.contains(object.index)) {
     raise_access_alarm(object, abort::kNoObject);
     return abort::kNoObject;

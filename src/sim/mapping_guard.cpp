@@ -36,6 +36,7 @@ std::uint32_t MappingGuard::check_entry(std::uint16_t index, std::uint32_t mappi
   const bool transmit = pdo_at(index)->direction == PdoDirection::transmit;
   // Gaps on EtherCAT, in either direction (ETG.1000.6, 5.6.7.4.6).
   if (object == ObjectAddress{0, 0} && profile_->rules.coe.exists()) return 0;
+  if (object.index == 0) return abort::kNoObject;
   if (object.index < 0x20) return transmit ? abort::kNotMappable : 0;  // Dummy entries fill RPDOs.
   const auto* entry = profile_->dictionary.find(object);
   if (entry == nullptr) return abort::kNoObject;

@@ -64,6 +64,7 @@ void PdoEngine::stop() {
 }
 
 void PdoEngine::on_frame(const can::Frame& frame, TimePoint now) {
+  synchronous_.clear();
   if (!operational_ || frame.error) return;
   if (frame.remote) return on_request(frame, now);
   const auto sync = static_cast<std::uint32_t>(values_->number(objects::kSyncCobId)) & canopen::kPdoCobIdMask;
@@ -142,7 +143,10 @@ void PdoEngine::on_sync_by_request(const Pdo& pdo, TimePoint now) {
 void PdoEngine::on_sync(const Pdo& pdo, std::optional<std::uint8_t> counter, TimePoint now) {
   auto& state = work(pdo);
   if (pdo.direction == PdoDirection::receive) {
-    if (const auto data = std::exchange(state.data, std::nullopt)) apply(pdo, *data);
+    const auto data = std::exchange(state.data, std::nullopt);
+    if (!data) return;
+    apply(pdo, *data);
+    for (const auto& entry : pdo.entries) synchronous_.insert(entry.object);
     return;
   }
   if (pdo.entries.empty()) return;

@@ -39,6 +39,9 @@ class PdoEngine {
   std::optional<can::Frame> take_frame();
   TimePoint deadline() const;
 
+  /// Whether the last frame was a SYNC at which a synchronous RPDO wrote this object; false when asked again.
+  bool take_synchronous(ObjectAddress object) { return synchronous_.erase(object) != 0; }
+
   /// Whether an RPDO came shorter than its mapping and was dropped, and none that fits has come since (CiA
   /// 301, table 26: 8210h).
   bool has_short_rpdo() const { return !short_.empty(); }
@@ -75,8 +78,9 @@ class PdoEngine {
   std::map<std::uint16_t, Work> work_;
   bool operational_ = false;
   TimePoint next_look_ = kNever;
-  std::set<std::uint16_t> short_;  ///< Communication records of RPDOs whose last frame was too short.
-  std::set<std::uint16_t> long_;   ///< … was too long.
+  std::set<std::uint16_t> short_;        ///< Communication records of RPDOs whose last frame was too short.
+  std::set<std::uint16_t> long_;         ///< … was too long.
+  std::set<ObjectAddress> synchronous_;  ///< Written by synchronous RPDOs at the last SYNC.
   std::deque<can::Frame> tx_;
 };
 

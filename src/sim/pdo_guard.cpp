@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/pdo_index.hpp"
+#include "canopen/cob_id.hpp"
 #include "canopen/cob_id_rules.hpp"
 #include "canopen/pdo.hpp"
 #include "canopen/sdo_abort.hpp"
@@ -46,6 +47,10 @@ std::uint32_t PdoGuard::check(ObjectAddress object, ByteSpan data, bool operatio
     return check_cob_id(object, static_cast<std::uint32_t>(value));
   }
   if (!allowed(rules.parameters, object.index, operational)) return abort::kDeviceState;
+  // 7.5.2.37: the inhibit time changes only while the PDO is invalid.
+  if (object.sub == 3 && place->direction == PdoDirection::transmit && !rules.inhibit_while_valid &&
+      is_valid(object.index) && value != values_->number(object))
+    return abort::kRange;
   const bool known = object.sub != 2 || knows_type(*place, static_cast<std::uint8_t>(value));
   return known ? 0 : abort::kRange;
 }
@@ -66,7 +71,8 @@ std::uint32_t PdoGuard::check_cob_id(ObjectAddress object, std::uint32_t cob_id)
   const bool was_valid = (now & canopen::kPdoInvalid) == 0;
   const bool is_valid = (cob_id & canopen::kPdoInvalid) == 0;
   const bool basic = (cob_id & canopen::kPdoExtended) == 0;
-  if (is_valid && basic && canopen::is_restricted(cob_id & canopen::kPdoCobIdMask)) return abort::kRange;
+  const auto can_id = cob_id & canopen::kPdoCobIdMask;
+  if (is_valid && basic && (can_id > canopen::kCanId || canopen::is_restricted(can_id))) return abort::kRange;
   const bool stays_valid = was_valid && is_valid;
   return stays_valid && cob_id != now ? abort::kRange : 0;  // 7.5.2.33: bits 0 to 29 only while invalid.
 }

@@ -39,6 +39,7 @@ PdoWish wish_of(PdoWorld& world) {
   auto tpdo = world.pdo("TPDO1");
   tpdo.entries = {entry(0x60640020), entry(0x60410010)};
   tpdo.type = 3;
+  if (tpdo.inhibit) tpdo.inhibit = static_cast<std::uint16_t>(*tpdo.inhibit + 50);
   auto other = world.pdo("TPDO2");
   other.cob_id ^= canopen::kPdoInvalid;
   if ((world.profile().rules.pdo.cob_id_bits & 0x7FFU) != 0) std::swap(other_rpdo.cob_id, rpdo.cob_id);
@@ -236,6 +237,44 @@ TEST(PdoChange, OfAnUnknownDriveThatKeepsItsCobIdIsTriedAgainWithout) {
   ASSERT_FALSE(outcome.notices.empty());
   EXPECT_NE(outcome.notices[0].find("with the COB-ID left alone"), std::string::npos);
   EXPECT_EQ(world.pdo("TPDO2"), pdo);
+}
+
+/// CiA 301, 7.5.2.37: the inhibit time stays while the PDO is valid.
+TEST(PdoChange, TheInhibitTimeOfAValidTpdoIsChangedWhileThePdoIsSwitchedOff) {
+  for (const char* family : {"cia402", "gsd600", "dm", "da200", "ts"})
+    for (const bool known : {true, false}) {
+      SCOPED_TRACE(family);
+      PdoWorld world(PdoWorld::profile_of(family), 1);
+      auto pdo = world.pdo("TPDO1");
+      ASSERT_TRUE(pdo.inhibit);
+      pdo.cob_id &= ~canopen::kPdoInvalid;
+      ASSERT_FALSE(world.change({pdo}).failure);
+      if (!known && std::string_view(family) != "da200") world.client_profile = nullptr;
+      pdo.inhibit = static_cast<std::uint16_t>(*pdo.inhibit + 50);
+      const auto outcome = world.change({pdo});
+      EXPECT_FALSE(outcome.failure) << outcome.failure->message;
+      EXPECT_EQ(world.pdo("TPDO1"), pdo);
+    }
+}
+
+TEST(PdoChange, TheInhibitTimeIsAReasonToSwitchATpdoOffWhereMappingsAreOpenedByTheirCount) {
+  auto profile = PdoWorld::profile_of("ts");
+  profile.rules.pdo.inhibit_while_valid = false;
+  PdoWorld world(std::move(profile), 1);
+  auto pdo = world.pdo("TPDO1");
+  pdo.inhibit = std::uint16_t{100};
+  const auto outcome = world.change({pdo});
+  EXPECT_FALSE(outcome.failure) << outcome.failure->message;
+  EXPECT_EQ(world.pdo("TPDO1"), pdo);
+}
+
+TEST(PdoChange, TheInhibitTimeIsNoReasonToSwitchATpdoOfTheTsOff) {  // 1771, 1794
+  PdoWorld world(PdoWorld::profile_of("ts"), 1);
+  auto pdo = world.pdo("TPDO1");
+  pdo.inhibit = std::uint16_t{100};
+  ASSERT_FALSE(world.change({pdo}).failure);
+  // Fn_99 = 1 comes first: the flash is spared.
+  EXPECT_EQ(world.sent, (std::vector<std::string>{"601#2B99200001000000", "601#2B00180364000000"}));
 }
 
 /// What is read-only is so in every state: the node is not stopped for it.

@@ -54,6 +54,18 @@ TEST(PlanOfWrites, OpensAMappingByItsCountAloneWhereTheFamilyDoes) {
             (Steps{"0x1A00:0=00", "0x1A00:1=20006460", "0x1A00:0=01", "0x1800:2=FE"}));
 }
 
+TEST(PlanOfWrites, SwitchesATpdoOffForItsInhibitTimeUnlessTheFamilyNeedsNot) {
+  const auto present = with(kPresent, {{{0x1800, 3}, {0, 0}}});
+  const auto wanted = with(present, {{{0x1800, 3}, {100, 0}}});
+  const Steps steps{"0x1800:1=810100C0", "0x1800:3=6400", "0x1800:1=81010040"};
+  EXPECT_EQ(told(plan_writes(nullptr, present, wanted)), steps);
+  drive::Profile profile;
+  profile.rules.pdo.disable_by_count = true;
+  EXPECT_EQ(told(plan_writes(&profile, present, wanted)), steps);
+  profile.rules.pdo.inhibit_while_valid = true;
+  EXPECT_EQ(told(plan_writes(&profile, present, wanted)), (Steps{"0x1800:3=6400"}));
+}
+
 TEST(PlanOfWrites, ClearsAMappingByItsCountAlone) {
   const auto wanted = with(kPresent, {{{0x1800, 1}, {0x81, 0x01, 0, 0xC0}}, {{0x1A00, 0}, {0}}});
   EXPECT_EQ(told(plan_writes(nullptr, kPresent, wanted)), (Steps{"0x1800:1=810100C0", "0x1A00:0=00"}));

@@ -65,7 +65,9 @@ TEST_P(SyncObject, IsProducedByNone) {
 TEST_P(TimeObject, CanIdIsNoRestrictedOneAndStaysWhileItIsTaken) {
   for (const char* id : {"7F000000", "01010080", "00060180", "01070000", "00010020", "00010040"})
     EXPECT_EQ(put(0x1012, 0, id), kRange) << id;
+  EXPECT_EQ(put(0x1012, 0, "00000000"), kRange) << "the CAN-ID of NMT";
   EXPECT_EQ(put(0x1012, 0, "00020080"), kTaken);
+  EXPECT_EQ(put(0x1012, 0, "00000000"), kRange);
   EXPECT_EQ(put(0x1012, 0, "00010080"), kRange);
   EXPECT_EQ(put(0x1012, 0, "00020000"), kTaken);
   EXPECT_EQ(put(0x1012, 0, "00010080"), kTaken);

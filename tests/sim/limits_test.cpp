@@ -12,6 +12,11 @@ class Limits : public RowTest {};
 
 TEST_F(Limits, OfTheGsd600InInterpolatedPositionAreReached) {
   boot("gsd600");
+  // RPDO2 carries 60C1h:01, by type 1 (6198, 7479).
+  for (const char* request : {"601#2301140101030080", "601#2F01160000000000", "601#230116012001C160",
+                              "601#2F01160001000000", "601#2F01140201000000", "601#2301140101030000"})
+    ASSERT_EQ(sdo(request).substr(0, 6), "581#60") << request;
+  send("000#0101");
   enable("6");
   write({0x6098, 0}, "35");
   control("31");
@@ -27,12 +32,15 @@ TEST_F(Limits, OfTheGsd600InInterpolatedPositionAreReached) {
   expect_row("ip", 7501, "2", kOf);
   control("31");
   expect_row("ip", 7505, "6", kOf);
+  send("301#400D0300");  // 200000
+  send("080#");
   expect_row("ip", 7506, "7", kOf);
   EXPECT_EQ(read(kPosition), 131072);
   control("15");
   expect_row("ip", 7502, "3", kOf);
-  write(kPoint, "-50000");
   control("31");
+  send("301#B03CFFFF");  // -50000
+  send("080#");
   expect_row("ip", 7503, "4", kOf);
   expect_row("ip", 7504, "5", kOf);
   EXPECT_EQ(read(kPosition), -50000);

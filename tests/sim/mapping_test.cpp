@@ -126,6 +126,44 @@ TEST_F(Mapping, RemoteFramesAreNoTypeWhereTheyAreForbidden) {  // 1800h:01, bit 
     EXPECT_EQ(sdo("601#2F001402" + std::string(type) + "000000").substr(0, 6), kTaken) << "RPDO " << type;
 }
 
+TEST_F(Mapping, TheInhibitTimeStaysWhileThePdoIsValid) {  // CiA 301, 7.5.2.37
+  boot("cia402");
+  ASSERT_EQ(sdo("601#2300180181010000").substr(0, 6), kTaken);
+  EXPECT_EQ(sdo("601#2B00180364000000"), "581#8000180330000906");
+  EXPECT_EQ(sdo("601#2B00180300000000").substr(0, 6), kTaken) << "what it is";
+  EXPECT_EQ(sdo("601#2B00180564000000").substr(0, 6), kTaken) << "the event timer is free";
+  ASSERT_EQ(sdo("601#2300180181010080").substr(0, 6), kTaken);
+  EXPECT_EQ(sdo("601#2B00180364000000").substr(0, 6), kTaken);
+}
+
+TEST_F(Mapping, OfTheTsTheInhibitTimeChangesWhileThePdoIsValid) {  // 1771, 1794
+  boot("ts");
+  EXPECT_EQ(sdo("601#2B00180364000000").substr(0, 6), kTaken);
+}
+
+TEST_F(Mapping, AValidPdoOfElevenBitsHasNoHigherOnes) {  // CiA 301, table 66: bits 11 to 28 are 0
+  boot("cia402");
+  ASSERT_EQ(sdo("601#2300180181010080").substr(0, 6), kTaken);
+  for (const char* id : {"81010010", "81010100", "81090000"})
+    EXPECT_EQ(sdo("601#23001801" + std::string(id)), "581#8000180130000906") << id;
+  EXPECT_EQ(sdo("601#2300180181010030").substr(0, 6), kTaken) << "29 bits";
+  ASSERT_EQ(sdo("601#2300180181010080").substr(0, 6), kTaken);
+  ASSERT_EQ(sdo("601#2300180181010000").substr(0, 6), kTaken);
+  EXPECT_EQ(sdo("601#2300180181010010"), "581#8000180130000906") << "while it is valid";
+}
+
+class IndexZero : public Mapping, public testing::WithParamInterface<const char*> {};
+
+TEST_P(IndexZero, IsNoObject) {
+  boot(GetParam());
+  (void)sdo("601#2300140101020080");
+  ASSERT_EQ(sdo("601#2F00160000000000").substr(0, 6), kTaken);
+  EXPECT_EQ(sdo("601#2300160108000000"), "581#8000160100000206");
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, IndexZero, testing::Values("cia402", "dm", "ts"),
+                         [](const auto& test) { return std::string(test.param); });
+
 TEST_F(Mapping, OfTheTsARemoteFrameIsATypeAsBit30Says) {
   boot("ts");
   expect_remote_types_by_bit_30();
