@@ -8,6 +8,7 @@
 #include "drive/drive_settings.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/pdo_change.hpp"
+#include "session/pdo_cob_ids.hpp"
 #include "session/pdo_setup.hpp"
 #include "settings/change.hpp"
 #include "settings/comparison.hpp"
@@ -38,7 +39,9 @@ Result<void> RestoreTarget::prepare() {
   if (const auto still = check_standstill(); !still) return still;
   if (const auto fit = check_values(); !fit) return fit;
   if (!choice_.with_address) keeps_address_ = tell_kept_address(*desk_, *backup_, title_, node_);
-  return check_pdos();
+  if (const auto fit = check_pdos(); !fit) return fit;
+  asked_ = wanted_;
+  return session::add_pdo_cob_ids(*desk_->session, *desk_->profile, node_, choice_.before, present_, wanted_);
 }
 
 Result<void> RestoreTarget::check_identity() {

@@ -20,6 +20,7 @@ struct RestoreChoice {
   bool skip_invalid = false;  ///< Values that the drive cannot take are named and left out.
   bool keep = false;          ///< They are to survive power-off.
   bool only_looks = false;    ///< Nothing will be written: that the drive is energised is no hindrance.
+  session::Values before{};   ///< Old values of the restore that this one continues.
 };
 
 /// A drive that a backup is to go into: whether it may, and which values. Writes nothing.
@@ -40,6 +41,8 @@ class RestoreTarget {
 
   const session::Identity& identity() const { return identity_; }
   const session::Values& wanted() const { return wanted_; }
+  /// The same without the COB-IDs that are not of the backup: their PDOs are only made invalid for a while.
+  const session::Values& asked() const { return asked_; }
   const session::Values& present() const { return present_; }
   /// Values of a backup of ours that are outside of the family's limits, and why: the drive held them, but
   /// none is sent. They are not among wanted().
@@ -73,6 +76,7 @@ class RestoreTarget {
   RestoreChoice choice_;
   session::Identity identity_;
   session::Values wanted_;
+  session::Values asked_;
   session::Values present_;
   std::map<ObjectAddress, ObjectAddress> copies_;  ///< Added to wanted_ for what is to be kept, and of what.
   std::vector<Error> left_;

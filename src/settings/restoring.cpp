@@ -70,6 +70,10 @@ class Restoring {
     left_ = std::move(*left);
     auto choice = options_.choice;
     choice.keep = options_.keep;
+    if (const auto old = old_values(); old)
+      choice.before = *old;
+    else
+      return fail(old.error());
     RestoreTarget target(*desk_, *backup_, title_, node_, choice);
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     if (const auto same = hold_to_expected(target.present()); !same) return fail(same.error());
@@ -77,7 +81,7 @@ class Restoring {
                               {title_, node_, target.wanted()}, true, desk_->chinese);
     left_over_ = target.left();
     if (options_.keep)
-      doubts_ = doubts_of_keeping(*desk_->profile, node_, title_, target.present(), target.wanted());
+      doubts_ = doubts_of_keeping(*desk_->profile, node_, title_, target.present(), target.asked());
     for (const auto& doubt : doubts_) desk_->notices.push_back(doubt);
     const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
     keeps_address_ = target.keeps_address();
@@ -94,6 +98,17 @@ class Restoring {
     if (const auto noted = note(target); !noted) return fail(noted.error());
     if (const auto back = put_means_back(*desk_->session, left_); !back) return fail(back.error());
     return carry_out(target, std::move(comparison.record));
+  }
+
+  /// What the drive held when the restore began that this one continues; nothing where it is a new one.
+  Result<session::Values> old_values() const {
+    session::Values out;
+    if (!options_.resume) return out;
+    const auto old = read_backup(file_->path());
+    if (!old) return fail(old.error());
+    for (const auto& entry : old->entries)
+      if (entry.bytes) out.emplace(entry.object, *entry.bytes);
+    return out;
   }
 
   /// A family that cannot store is told so before anything is written.
