@@ -180,6 +180,17 @@ void add_al_state(Record& out, const session::EtherCatNetwork& ring, std::uint8_
     out.push_back({"process_data", Value(), Show::json});
 }
 
+List axis_records(std::span<const motion::OtherAxis> axes) {
+  List out;
+  for (const auto& axis : axes) {
+    Value state;
+    if (axis.statusword) state = drive::name(drive::decode_state(*axis.statusword));
+    out.emplace_back(
+        Record{{"axis", axis.number}, {"state", std::move(state)}, {"energised", axis.may_be_energised()}});
+  }
+  return out;
+}
+
 Record status_record(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers,
                      bool restarted) {
   Record out{{"node", node}};
@@ -192,6 +203,10 @@ Record status_record(Context& context, std::uint8_t node, std::span<const Result
   const auto owed = note_owed(context, node, restarted);
   if (!owed.values.empty())
     out.push_back({"restart_owed", show::owed_records(context.profile, owed.values), Show::json});
+  const auto others = motion::other_axes(*context.session, context.profile, node);
+  if (others.empty()) return out;
+  context.notices.push_back(fmt::format("node {}: {}", node, motion::axes_text(others)));
+  out.push_back({"other_axes", axis_records(others), Show::json});
   return out;
 }
 
@@ -257,9 +272,6 @@ Result<report::Value> run_status(Context& context, const Arguments& arguments) {
       continue;
     }
     out.documents.emplace_back(status_record(context, context.nodes[i], mine, *restarted));
-    if (const auto others = motion::other_axes(*context.session, context.profile, context.nodes[i]);
-        !others.empty())
-      context.notices.push_back(fmt::format("node {}: {}", context.nodes[i], motion::axes_text(others)));
     out.rows.push_back(overview_row(context, context.nodes[i], mine));
   }
   out.json_only = out.rows.empty();

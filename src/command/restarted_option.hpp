@@ -5,7 +5,7 @@
 
 namespace servoctl::command {
 
-/// Of the commands that show what waits for a restart.
+/// `--restarted`, of the commands that show which values wait for a restart.
 inline constexpr Parameter kRestartedOption{
     .name = "--restarted",
     .help = "the drive was restarted: nothing that was written before waits for a restart any more",
@@ -15,8 +15,8 @@ inline constexpr Parameter kRestartedOption{
 /// changes nothing.
 Result<bool> says_restarted(const Context& context, const Arguments& arguments);
 
-/// What of a node waits for a restart, with a notice of it; first nothing is left of that if it was
-/// restarted.
+/// Reads which values of a node wait for a restart, and adds a notice where any do. With `restarted` they are
+/// forgotten first.
 show::OwedRestart note_owed(Context& context, std::uint8_t node, bool restarted);
 
 }  // namespace servoctl::command

@@ -205,6 +205,7 @@ struct MotionRules {
   std::map<std::int64_t, std::int64_t> homing_like;
   std::optional<Condition> software_limits;  ///< 607Dh acts only while this holds.
   bool software_limits_homed = false;        ///< 607Dh acts only once the axis is homed.
+  std::uint32_t zero_ramp = 0;               ///< What a ramp of 0 (6083h to 6085h) counts as.
   std::vector<std::string> speed_limit;      ///< What limits the speed in torque mode.
   std::optional<std::uint32_t> setpoints;    ///< Targets the drive can hold.
   std::vector<PowerParameter> without_controlword;
@@ -228,7 +229,7 @@ struct FaultRules {
   std::vector<Setting> reset;  ///< What resets a fault beside the controlword.
   bool by_controlword = true;
   std::string alarm;  ///< Parameter or object that holds the panel's alarm number.
-  std::string ramp;   ///< Object by whose ramp the reaction stops the motor; empty: it is let go at once.
+  std::string ramp;   ///< Object by whose ramp the reaction stops the motor; empty: it is de-energised at once.
   std::string length_alarm;     ///< Panel text of the alarm a write of a wrong length raises.
   std::string mapping_alarm;    ///< … of mapping in Operational.
   std::string range_alarm;      ///< … of a value out of range.
@@ -244,7 +245,7 @@ struct AbortText {
   std::string text_zh;
 };
 
-/// Instead of an object with a ramp: by all the torque the drive has.
+/// Stands for a ramp: the motor slows down with the greatest torque of the drive.
 inline constexpr std::string_view kMostTorque = "most torque";
 
 /// What `<family>.toml` says: the rules of a family that no table can carry. Parameters are named by their
@@ -286,7 +287,7 @@ struct Rules {
   std::vector<ModeBits> mode_bits;
   std::vector<std::int64_t> quick_stop_stays_enabled;
   /// Values of 605Ah that slow the motor down: the object that holds the ramp, or kMostTorque. By any other
-  /// value it is let go at once. 0 stands for a drive without 605Ah.
+  /// value it is de-energised at once. 0 stands for a drive without 605Ah.
   std::map<std::int64_t, std::string> quick_stop_ramps;
 
   std::map<std::uint32_t, AbortText> abort_texts;

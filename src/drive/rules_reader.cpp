@@ -265,6 +265,7 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
        {"homing_like", [&](const toml::node& n) { return read_numbered(n, out.homing_like); }},
        {"software_limits", condition_into(out.software_limits)},
        {"software_limits_homed", into(out.software_limits_homed)},
+       {"zero_ramp", into(out.zero_ramp)},
        {"speed_limit", into(out.speed_limit)},
        {"setpoints", into(out.setpoints)},
        {"without_controlword", list_into(out.without_controlword)}});

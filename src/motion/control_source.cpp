@@ -1,23 +1,42 @@
 #include "motion/control_source.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
 
-#include "base/bytes.hpp"
-#include "drive/naming.hpp"
+#include "base/number.hpp"
+#include "session/storage.hpp"
 
 namespace servoctl::motion {
 
-OtherSource other_source(session::Session& session, const drive::Profile& profile, std::uint8_t node) {
-  for (const auto& need : profile.rules.nmt.needs) {
-    const auto place = drive::place_of(profile, need.name);
-    const auto held = place ? session.upload(node, *place) : Result<Bytes>(Bytes());
-    if (!held || held->empty()) continue;
-    const auto value = static_cast<std::int64_t>(load_le(*held));
-    if (value == need.value) continue;
-    return {fmt::format("{} is {}, and {} is needed for CANopen", need.name, value, need.value),
-            fmt::format("`param set {}={} -n {}` and restart the drive", need.name, need.value, node)};
+Result<OtherSource> other_source(session::Session& session, const MotionUnits& units,
+                                 const OwedValues& owed) {
+  for (const auto& need : units.profile().rules.nmt.needs) {
+    const auto values = setting_of(session, units, need.name, owed);
+    if (!values) return fail(values.error());
+    const auto needed = static_cast<double>(need.value);
+    const auto& held = values->front();
+    const auto& in_force = values->back();
+    const bool waits = values->size() > 1;
+    if (in_force == needed) continue;
+    if (waits && held == needed)
+      return OtherSource{fmt::format("{} = {} waits for a restart", need.name, need.value),
+                         "restart the drive"};
+    if (!in_force) continue;
+    return OtherSource{
+        fmt::format("{} is {}, and {} is needed for CANopen", need.name, number_text(*in_force), need.value),
+        fmt::format("`{}` and restart the drive",
+                    lasting_setting(units.profile(), units.node(), need.name, need.value))};
   }
-  return {};
+  return OtherSource{};
+}
+
+std::string lasting_setting(const drive::Profile& profile, std::uint8_t node, std::string_view name,
+                            std::int64_t value) {
+  auto out = fmt::format("param set {}={} -n {}", name, value, node);
+  if (const auto& locked = profile.rules.store.locked; std::ranges::find(locked, name) != locked.end())
+    out += " --unlock";
+  if (session::can_store(profile)) out += " --keep";
+  return out;
 }
 
 }  // namespace servoctl::motion

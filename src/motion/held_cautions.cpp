@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "drive/homing_method.hpp"
 #include "drive/naming.hpp"
+#include "motion/control_source.hpp"
 #include "show/caution_text.hpp"
 
 namespace servoctl::motion {
@@ -25,8 +26,8 @@ std::string remedy(const HeldCaution& held, const MotionUnits& units) {
   if (ending.empty()) return "use another method or motion";
   const bool restart = show::needs_restart(units.profile(), rule);
   if (!held.unread && units.object(rule.name))
-    return restart ? fmt::format("`param set {}={} -n {}` and restart the drive", rule.name, *rule.set,
-                                 units.node())
+    return restart ? fmt::format("`{}` and restart the drive",
+                                 lasting_setting(units.profile(), units.node(), rule.name, *rule.set))
                    : fmt::format("`param set {}={} -n {}` ends that", rule.name, *rule.set, units.node());
   return restart ? fmt::format("set {} on the panel and restart the drive, then add --panel {}={}", ending,
                                rule.name, *rule.set)

@@ -189,6 +189,7 @@ Result<void> Motion::begin(std::int8_t mode, const std::vector<MotionSetting>& s
   guard_.reset();  // Its way out comes before the next one begins.
   guard_ = std::make_unique<MotionGuard>(*session_, *units_, node_);
   guard_->set_standstill(standstill_);
+  guard_->set_other_source(source_);
   session::Rehearsal unused;
   if (const auto ready = make_ready(*guard_, mode, settings, kept_target, unused); !ready) return ready;
   if (const auto fine = look_in_op(); !fine) return fine;

@@ -87,7 +87,9 @@ class Motion {
   /// The part of look() that is about the drive alone.
   Result<std::vector<PreflightItem>> look_at_drive(bool chinese);
   /// What the motion is for, and what was said for its preflight.
-  PreflightRequest request() const { return {purpose_, options_.panel, options_.ignores_remote, owed()}; }
+  PreflightRequest request() const {
+    return {purpose_, options_.panel, options_.ignores_remote, owed(), source_};
+  }
 
   /// Looks once more, because a person may have taken time to answer: Errc::refused when somebody else has
   /// enabled the drive meanwhile. Then arms the watchdog, sets the mode, makes the targets harmless, writes
@@ -188,6 +190,7 @@ class Motion {
   std::uint8_t node_;
   MotionOptions options_;
   Power power_;
+  OtherSource source_;  ///< As look_at_drive() found it.
   std::unique_ptr<MotionUnits> units_;
   std::unique_ptr<MotionMonitor> monitor_;
   std::unique_ptr<MotionGuard> guard_;

@@ -5,7 +5,6 @@
 
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
-#include "motion/control_source.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -103,9 +102,8 @@ Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
                           drive::name(now_in), statusword_);
   std::string hint;
   const bool fault = now_in == DriveState::fault || now_in == DriveState::fault_reaction_active;
-  const auto source = fault ? OtherSource() : other_source(*session_, *profile_, node_);
-  if (source.is_known())
-    return drive_error(Errc::negative, node_, fmt::format("{}: {}", what, source.cause), source.remedy);
+  if (!fault && source_.is_known())
+    return drive_error(Errc::negative, node_, fmt::format("{}: {}", what, source_.cause), source_.remedy);
   if (fault)
     hint = "`fault show` shows the fault";
   else if (tells(kRemote) && (statusword_ & kRemote) == 0)

@@ -11,6 +11,7 @@
 #include "drive/power_path.hpp"
 #include "drive/profile.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/control_source.hpp"
 #include "motion/power_down.hpp"
 #include "session/session.hpp"
 
@@ -36,6 +37,8 @@ class Power {
   Power(session::Session& session, const drive::Profile& profile, std::uint8_t node)
       : session_(&session), profile_(&profile), node_(node) {}
 
+  /// What reach() names where the drive does not follow: nothing is read then, as stop words come first.
+  void set_other_source(OtherSource source) { source_ = std::move(source); }
   Result<std::uint16_t> statusword();
   Result<drive::DriveState> state();
   /// Writes the controlword (6040h) as it is; nothing is waited for.
@@ -75,6 +78,7 @@ class Power {
   const drive::Profile* profile_;
   std::uint8_t node_;
   std::uint16_t statusword_ = 0;  ///< Read last.
+  OtherSource source_;
 };
 
 /// Stops and disables these drives, all at the same time. Does not hear Ctrl-C. The nodes with what came of

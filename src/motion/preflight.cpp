@@ -9,7 +9,6 @@
 #include "base/text.hpp"
 #include "drive/provenance.hpp"
 #include "drive/standard_objects.hpp"
-#include "motion/control_source.hpp"
 #include "motion/operation_mode.hpp"
 #include "motion/other_axes.hpp"
 #include "motion/power.hpp"
@@ -117,7 +116,7 @@ class Preflight {
   /// What a low bit 9 says differs from drive to drive; some set it in the state operational only.
   void add_remote(const Power& power) {
     constexpr std::string_view kLead = "statusword bit 9 (remote) is 0";
-    const auto source = other_source(*session_, units_->profile(), node_);
+    const auto& source = request_.source;
     const auto start = power.start_command();
     auto text = source.is_known()
                     ? fmt::format("{}: {}", kLead, source.cause)

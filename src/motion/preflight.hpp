@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "motion/control_source.hpp"
 #include "motion/held_cautions.hpp"
 #include "motion/motion_units.hpp"
 #include "motion/watchdog.hpp"
@@ -33,6 +34,7 @@ struct PreflightRequest {
   PanelValues panel = {};
   bool ignores_remote = false;  ///< Goes on although bit 9 of the statusword is 0.
   show::OwedRestart owed = {};  ///< What waits for a restart, so that the drive does not go by it.
+  OtherSource source = {};      ///< Why the drive may not obey, by its parameters.
 };
 
 /// What there is to know before the drive is energised: state, warnings, inputs, limits, the family's

@@ -168,6 +168,7 @@ class Axis {
   ObjectAddress speed_object() const;               ///< Holds the speed of a move to a position.
   double speed_factor(ObjectAddress object) const;  ///< One of the object's speed unit in units a second.
   double ramp(ObjectAddress object) const;          ///< Units a second a second.
+  static constexpr double kNoRamp = 1e12;           ///< The speed changes at once.
   double ramp() const;                              ///< The one of the present mode, or of a stop.
   double turning() const;                           ///< The speed of the motor itself.
   std::uint16_t position_bits() const;

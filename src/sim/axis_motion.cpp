@@ -19,6 +19,7 @@ constexpr double kPercent = 100;
 constexpr double kFactoryTorque = 3;
 /// The window of the following error where there is no 6065h, in turns.
 constexpr double kAssumedWindow = 3;
+constexpr double kLongestStop = 86'400;    ///< Seconds; a ramp that takes longer never ends.
 constexpr double kNoWindow = 0xFFFF'FFFF;  ///< 6065h: not watched (CiA 402-2).
 
 }  // namespace
@@ -179,9 +180,9 @@ Duration Axis::begin_stop(const std::string& ramp_by) {
   if (ramp_by == drive::kMostTorque)
     stop_ramp_ = most_torque() / rated_torque() * kTurnsPerSecondOfRatedTorque * units_per_turn();
   else
-    stop_ramp_ = object ? ramp(*object) : 0;
-  if (stop_ramp_ <= 0) stop_ramp_ = ramp();
-  const std::chrono::duration<double> time(std::abs(velocity_) / stop_ramp_);
+    stop_ramp_ = object ? ramp(*object) : kNoRamp;
+  const double seconds = std::abs(velocity_) / stop_ramp_;
+  const std::chrono::duration<double> time(seconds < kLongestStop ? seconds : kLongestStop);
   return std::chrono::ceil<std::chrono::milliseconds>(time) + std::chrono::milliseconds(1);
 }
 

@@ -17,7 +17,6 @@ constexpr double kAssumedTurn = 10000;
 constexpr double kLearnedTurn = 131072;
 /// Speed that ramps given as a time lead to.
 constexpr double kRampSpeedRpm = 3000;
-constexpr double kNoRamp = 1e12;
 /// Beyond it nothing can be written.
 constexpr double kMostSteps = 9e15;
 
@@ -128,7 +127,8 @@ double Axis::speed_factor(ObjectAddress object) const {
 
 double Axis::ramp(ObjectAddress object) const {
   const auto unit = meaning_of(object).unit;
-  const double value = read(object);
+  const double held = read(object);
+  const double value = held == 0 ? profile_->rules.motion.zero_ramp : held;
   if (value <= 0) return kNoRamp;
   if (unit == "ms") return kRampSpeedRpm / 60 * units_per_turn() / (value / 1000);
   return unit == "rpm/s" ? value * units_per_turn() / 60 : value;

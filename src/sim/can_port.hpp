@@ -71,7 +71,7 @@ class CanPort final : public Device, private DrivePort {
   canopen::NmtState nmt_ = canopen::NmtState::initialising;
   TimePoint boot_at_ = TimePoint::min();  ///< When the boot-up message is due; kNever once it is sent.
   enum class Boot : std::uint8_t { power_on, reset_node, reset_communication };
-  Boot boots_ = Boot::power_on;  ///< What the next boot-up comes of.
+  Boot boots_ = Boot::power_on;  ///< Why the next boot-up comes.
   EmergencyProducer emergencies_;
   std::deque<can::Frame> tx_;
   AnswerWay answers_;

@@ -96,12 +96,16 @@ std::optional<std::pair<std::string, std::int64_t>> panel_value(const drive::Pro
 /// What was set on the panel of these drives.
 Result<bool> set_on_panel(const CellSpec& spec, std::string_view text, std::span<DriveModel* const> drives) {
   for (const auto one : split(text, ',')) {
-    bool taken = false;
+    bool known = false;
     for (auto* drive : drives) {
       const auto value = panel_value(drive->profile(), one);
-      taken = (value && drive->set_on_panel(value->first, value->second)) || taken;
+      if (!value) continue;
+      known = true;
+      if (!drive->set_on_panel(value->first, value->second))
+        return spec.wrong(fmt::format("'panel={}': {} cannot be set to {} on the panel of the {}", text,
+                                      value->first, value->second, drive->profile().family));
     }
-    if (!taken)
+    if (!known)
       return spec.wrong(fmt::format(
           "'panel={}' is not NAME=VALUE of parameters that a drive here has: sim:sv2@1?panel=PA-20=0", text));
   }

@@ -1,12 +1,14 @@
 // How a drive model starts and how time passes for it.
 #include "sim/drive_model.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
 #include "canopen/node_id.hpp"
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
+#include "od/value.hpp"
 
 namespace servoctl::sim {
 namespace {
@@ -58,7 +60,8 @@ void DriveModel::begin_communication() {
   load_mirrors();
 }
 
-/// What a drive has when its power comes, or without that (`restarts` is false) when it begins anew.
+/// The values with which it starts: the defaults and what its memory has. Without power-on (`restarts` is
+/// false), the values that only a restart changes stay.
 void DriveModel::load_values(bool restarts, TimePoint now) {
   const auto load = [this] {
     values_.load_defaults(node_);
@@ -128,12 +131,12 @@ bool DriveModel::set_on_panel(const std::string& id, std::int64_t value) {
     return true;
   }
   const auto* entry = profile_->dictionary.find(*found->object);
-  const auto size = entry == nullptr ? std::nullopt : od::size_of(entry->type);
-  if (!size) return false;
-  const auto bytes = store_le(static_cast<std::uint64_t>(value), *size);
-  if (values_.check_write(*found->object, bytes, node_) != 0) return false;
-  memory_->cells(key_)[*found->object] = bytes;
-  values_.set(*found->object, bytes);
+  const auto typed = entry == nullptr ? Result<od::Value>(std::int64_t{0})
+                                      : od::parse_value(entry->type, fmt::to_string(value));
+  const auto bytes = entry == nullptr || !typed ? Result<Bytes>(Bytes()) : od::encode(entry->type, *typed);
+  if (!bytes || bytes->empty() || values_.check_write(*found->object, *bytes, node_) != 0) return false;
+  memory_->cells(key_)[*found->object] = *bytes;
+  values_.set(*found->object, *bytes);
   values_.start();
   return memory_->save().has_value();
 }

@@ -22,6 +22,8 @@ OPTIONAL = {
     "lss-scan.schema.json#/anyOf/0/items/properties/bus": "where the line is for several buses: nothing else tells the rows apart",
     **{f"defs.schema.json#/$defs/{kind}/properties/restart_owed": "only where something waits for a restart"
        for kind in ("status_can", "status_ring")},
+    **{f"defs.schema.json#/$defs/{kind}/properties/other_axes": "only where the node has several axes"
+       for kind in ("status_can", "status_ring")},
     "pdo-file.schema.json#/properties/family": "a person may leave it out of the file",
     **{f"pdo-file.schema.json#/properties/pdo/items/properties/{key}": LEFT_OUT
        for key in ("cob_id", "valid", "type", "inhibit_us", "event_ms", "sync_start", "map")},

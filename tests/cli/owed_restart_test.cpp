@@ -46,6 +46,37 @@ TEST_F(OwedRestart, AWriteThatWaitsIsShownUntilTheRestartIsSeen) {
   EXPECT_FALSE(owes(kDrive)) << all();
 }
 
+TEST_F(OwedRestart, IsNamedWhereTheDriveDoesNotObeyWithoutIt) {
+  for (const auto& [family, set] :
+       {std::pair{"da200", "param set P0.03=7"}, std::pair{"ts", "param set Fn_00=20 --unlock --keep"}}) {
+    const auto place = fmt::format("-n 1 -d {0} -b sim:{0}@1", family);
+    ASSERT_EQ(run(fmt::format("{} {}", set, place)), 0) << all();
+    EXPECT_NE(run(fmt::format("enable --yes {}", place)), 0) << all();
+    EXPECT_TRUE(says("waits for a restart")) << all();
+    EXPECT_TRUE(says("hint: restart the drive")) << all();
+    EXPECT_FALSE(says("hint: `nmt start")) << all();
+  }
+}
+
+TEST_F(OwedRestart, TheLineThatIsNamedMakesTheDriveObey) {
+  for (const auto* family : {"da200", "ts"}) {
+    const auto bus = fmt::format("sim:{0}@1?state={1}/{0}", family, folder.string());
+    const auto place = fmt::format("-n 1 -d {} -b {}", family, bus);
+    EXPECT_NE(run(fmt::format("enable --yes {}", place)), 0) << all();
+    const auto hint = all();
+    const auto at = hint.find("`param set ");
+    ASSERT_NE(at, std::string::npos) << hint;
+    const auto line = hint.substr(at + 1, hint.find(" -n 1", at) - at - 1);
+    const auto options =
+        std::string(hint.find("--unlock --keep") != std::string::npos ? " --unlock --keep" : "");
+    begin();
+    ASSERT_EQ(run(fmt::format("{}{} {}", line, options, place)), 0) << all();
+    begin();  // The simulated drive starts anew with it.
+    EXPECT_EQ(run(fmt::format("enable --yes {}", place)), 0) << all();
+    EXPECT_EQ(run(fmt::format("disable {}", place)), 0) << all();
+  }
+}
+
 TEST_F(OwedRestart, OverModbusInfoShowsItAndEndsIt) {
   constexpr const char* kModbus = "-n 1 -d ts -b modbus:sim:ts@1";
   ASSERT_EQ(run(fmt::format("param set Fn_00=20 --unlock --keep {}", kModbus)), 0) << all();

@@ -61,7 +61,7 @@ TEST_F(QuickStop, StaysActiveAsLongAsItSlowsDown) {
   EXPECT_EQ(state(), DriveState::quick_stop_active);
   EXPECT_TRUE(model().is_moving());
   EXPECT_EQ(write(objects::kControlword, 0x0F), 0U);
-  EXPECT_EQ(state(), DriveState::quick_stop_active) << "0Fh counts behind the stop alone (6493)";
+  EXPECT_EQ(state(), DriveState::quick_stop_active) << "0Fh counts only after the stop (6493)";
   run(200ms);
   EXPECT_EQ(state(), DriveState::switch_on_disabled);
 }
@@ -121,6 +121,54 @@ TEST_F(QuickStop, OfCia402TakesSlowDownOrQuickStopRamp) {
     run(50ms);
     EXPECT_EQ(state(), option < 5 ? DriveState::switch_on_disabled : DriveState::quick_stop_active);
   }
+}
+
+TEST_F(QuickStop, OfDrivesWithout605AhTakesTheRampThatTheyHave) {
+  build("da200");  // 6085h is a time in ms.
+  enable();
+  ASSERT_EQ(write(kQuickStopDeceleration, 30'000), 0U);
+  ASSERT_EQ(write_amount(kTargetVelocity, 100), 0U);
+  run(20s);
+  expect_near(stop(), 1s);
+  build("ts");
+  turn(0, 300, 1, 1);
+  EXPECT_GT(stop(), 100ms) << "6084h (assumed)";
+}
+
+TEST_F(QuickStop, WithTheMostTorqueTakesTime) {
+  for (const auto& [family, options] :
+       {std::pair{"cia402", std::vector{3U, 4U, 7U, 8U}}, std::pair{"sv2", std::vector{2U, 6U}}})
+    for (const auto option : options) {
+      SCOPED_TRACE(family);
+      build(family);
+      turn(option, 1'000'000, 5, 5);
+      const auto took = stop();
+      EXPECT_GT(took, 1ms) << option;
+      EXPECT_LT(took, 5s) << option;
+    }
+}
+
+TEST_F(QuickStop, ByARampThatNeverEndsStaysActive) {
+  build("gsd600");
+  turn(2, 1'310'720, 5, 5);
+  ASSERT_EQ(write(kQuickStopDeceleration, 0), 0U);
+  EXPECT_GE(stop(), 10s) << "0 counts as 1 inc/s² (5992)";
+  build("dm");
+  turn(2, 10, 5, 5);
+  ASSERT_EQ(write(kQuickStopDeceleration, 1), 0U) << "the least float above 0";
+  EXPECT_GE(stop(), 10s);
+  EXPECT_EQ(state(), DriveState::quick_stop_active);
+}
+
+TEST_F(QuickStop, EndsWithAFault) {
+  build("gsd600");
+  turn(2, 1'310'720, 5, 5);
+  EXPECT_EQ(write(objects::kControlword, 0x02), 0U);
+  run(100ms);
+  model().raise_fault(0x8611, {}, now_);
+  run(50ms);
+  EXPECT_EQ(state(), DriveState::fault);
+  EXPECT_FALSE(model().is_moving());
 }
 
 TEST_F(QuickStop, IsCutShortByDisableVoltage) {

@@ -20,7 +20,7 @@ class RestartEffect : public DriveModelOf {
   }
 };
 
-/// None is in force before the restart, and each that outlives it is in force behind it.
+/// None is in force before the restart, and each that outlives it is in force after it.
 TEST_P(RestartEffect, WaitsForTheRestartForEveryParameterAndObject) {
   for (const auto object : objects()) {
     const auto before = in_force(object);
