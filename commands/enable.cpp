@@ -166,7 +166,7 @@ class Enabling {
     std::set<std::uint8_t> nodes;
     for (const auto node : begun_)
       if (context_->session->energised().contains(node)) nodes.insert(node);
-    for (const auto& [node, done] : motion::de_energise(*context_->session, nodes)) {
+    for (const auto& [node, done, fault] : motion::de_energise(*context_->session, nodes)) {
       if (done) {
         context_->notices.push_back(
             fmt::format("node {} had been enabled by this line; it has been stopped and disabled", node));

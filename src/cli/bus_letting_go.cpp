@@ -73,8 +73,15 @@ void BusHolder::stop_and_disable() {
 }
 
 void BusHolder::stop_and_disable(session::Session& session) {
-  for (const auto& [node, done] : motion::de_energise(session)) {
-    if (done)
+  for (const auto& [node, done, ends_in_fault] : motion::de_energise(session)) {
+    if (done && ends_in_fault)
+      fail_closing(
+          names(session),
+          drive_error(Errc::negative, node,
+                      "it was still energised; it is de-energised now, but in fault, and may not have "
+                      "obeyed the stop",
+                      "`fault show` shows the fault"));
+    else if (done)
       console_->err("notice: " + names(session).in(motion::disabled_notice(node)) + "\n");
     else
       warn(session, node, done.error());

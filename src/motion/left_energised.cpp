@@ -68,7 +68,7 @@ void tell_left_energised(show::Desk& desk, const std::set<std::uint8_t>& nodes) 
 }
 
 void stop_left_energised(show::Desk& desk) {
-  for (const auto& [node, done] : de_energise(*desk.session)) {
+  for (const auto& [node, done, fault] : de_energise(*desk.session)) {
     if (done) {
       desk.notices.push_back(disabled_notice(node));
       continue;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <utility>
 
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
@@ -175,9 +176,8 @@ Result<void> Power::take_down(PowerAim aim) {
   return done.outcome;
 }
 
-std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session,
-                                                               const std::set<std::uint8_t>& nodes) {
-  std::vector<std::pair<std::uint8_t, Result<void>>> out;
+std::vector<DeEnergised> de_energise(session::Session& session, const std::set<std::uint8_t>& nodes) {
+  std::vector<DeEnergised> out;
   if (nodes.empty()) return out;
   const auto hold = session.protect(session::Care::guarded);
   std::vector<PowerDownPlan> plans;
@@ -187,11 +187,13 @@ std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session&
     plans.back().aim = PowerAim::stop_and_disable;
   }
   const auto done = take_down(session, plans);
-  for (std::size_t i = 0; i < plans.size(); ++i) out.emplace_back(plans[i].node, done[i].outcome);
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    out.push_back({plans[i].node, done[i].outcome,
+                   done[i].state() == DriveState::fault && done[i].found != DriveState::fault});
   return out;
 }
 
-std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session) {
+std::vector<DeEnergised> de_energise(session::Session& session) {
   return de_energise(session, session.energised().nodes());
 }
 

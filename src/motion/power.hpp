@@ -5,7 +5,6 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "drive/power_path.hpp"
@@ -81,12 +80,18 @@ class Power {
   OtherSource source_;
 };
 
-/// Stops and disables these drives, all at the same time. Does not hear Ctrl-C. The nodes with what came of
-/// it.
-std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session,
-                                                               const std::set<std::uint8_t>& nodes);
+/// What came of stopping and disabling one drive.
+struct DeEnergised {
+  std::uint8_t node = 0;
+  Result<void> outcome;
+  /// It is without power, but in fault, and was not seen so before it was commanded.
+  bool ends_in_fault = false;
+};
+
+/// Stops and disables these drives, all at the same time. Does not hear Ctrl-C.
+std::vector<DeEnergised> de_energise(session::Session& session, const std::set<std::uint8_t>& nodes);
 /// The same for every drive that was left energised through this session.
-std::vector<std::pair<std::uint8_t, Result<void>>> de_energise(session::Session& session);
+std::vector<DeEnergised> de_energise(session::Session& session);
 
 /// The drive is energised although servoctl has not done it.
 Error enabled_by_others(std::uint8_t node, drive::DriveState state);

@@ -54,9 +54,9 @@ def until(condition, seconds):
     return False
 
 
-def judge(what, code, env):
+def judge(what, code, env, after):
     """When the lies are over."""
-    time.sleep(LIE_FOR + 0.2)
+    time.sleep(after / 1000 + LIE_FOR + 0.2)
     found = status(env)
     if found is None:
         failures.append(f"{what}: exit {code}, and its state cannot be read afterwards")
@@ -97,7 +97,7 @@ def attack(number):
         except subprocess.TimeoutExpired:
             failures.append(f"{what}: it does not end")
             return
-        judge(what, code, env)
+        judge(what, code, env, after)
     finally:
         for process in (run, drive):
             if process is not None and process.poll() is None:

@@ -209,6 +209,18 @@ TEST_F(EnergisedLines, ADriveThatCannotBeLetGoReachesTheExitCode) {
   }
 }
 
+TEST_F(EnergisedLines, ADriveThatEndsInFaultInsteadOfObeyingReachesTheExitCode) {
+  for (const int code : {0, 130, 5}) {
+    open("coe:sim:sv2@1?lie=wkc,frozen-outputs&lie-after=100ms", "sv2");
+    ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
+    (void)run("watch statusword -n 1 --for 500ms");
+    shell->let_go();
+    EXPECT_TRUE(says("node 1: it was still energised; it is de-energised now, but in fault")) << all();
+    EXPECT_FALSE(says("it has been stopped and disabled")) << all();
+    EXPECT_EQ(shell->close(code), code == 5 ? 5 : 1) << all();
+  }
+}
+
 TEST_F(EnergisedLines, ASignalBehindTheLastLineLeavesNothingEnergised) {
   ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
   looks_left = 0;

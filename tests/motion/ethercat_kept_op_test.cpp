@@ -53,7 +53,7 @@ TEST_F(EtherCatKeptOp, WhenEverythingEndsADriveThatTheUserHadInOpEndsInPreOp) {
   ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
   network().keep_operational(1);
   session_->energised().insert(1);
-  ASSERT_TRUE(de_energise(*session_).front().second);
+  ASSERT_TRUE(de_energise(*session_).front().outcome);
   EXPECT_EQ(slave().state(), sim::EscState::pre_op);
 }
 

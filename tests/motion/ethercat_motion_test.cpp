@@ -222,7 +222,7 @@ TEST_F(EtherCatMotion, ADriveThatWasEnabledIsHeldAndLetGo) {
   EXPECT_TRUE(network().must_go_on());
   const auto done = de_energise(*session_);
   ASSERT_EQ(done.size(), 1U);
-  EXPECT_TRUE(done.front().second);
+  EXPECT_TRUE(done.front().outcome);
   expect_safe();
   EXPECT_EQ(slave().state(), sim::EscState::pre_op);
 }

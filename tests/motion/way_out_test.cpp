@@ -82,7 +82,7 @@ TEST_P(WayOutOfFamily, WhatWasLeftEnergisedIsTakenDownTogetherAndTheDeadOneIsTol
   all.drive(2).wire_faults().silent = true;
   const auto done = de_energise(*all.session);
   ASSERT_EQ(done.size(), 8U);
-  for (const auto& [node, outcome] : done) EXPECT_EQ(outcome.has_value(), node != 2) << int{node};
+  for (const auto& [node, outcome, fault] : done) EXPECT_EQ(outcome.has_value(), node != 2) << int{node};
   EXPECT_EQ(all.session->energised().nodes(), std::set<std::uint8_t>{2});
 }
 

@@ -57,7 +57,7 @@ TEST_P(WayOutInTrouble, DrivesThatWereLeftEnergisedAreStoppedOverALinkThatComesB
   Several all(family(), 3);
   all.bus->outage.from = all.session->now();
   all.bus->outage.to = all.session->now() + 2s;
-  for (const auto& [node, outcome] : de_energise(*all.session)) EXPECT_TRUE(outcome) << int{node};
+  for (const auto& [node, outcome, fault] : de_energise(*all.session)) EXPECT_TRUE(outcome) << int{node};
   for (const auto node : all.nodes) EXPECT_EQ(all.drive(node).power_state(), DriveState::switch_on_disabled);
 }
 
