@@ -151,6 +151,8 @@ class Motion {
   bool is_told_turn() const { return options_.turn.has_value() || units_->uses_learned(); }
 
   const MotionUnits& units() const { return *units_; }
+  /// Why the drive may not obey, as look_at_drive() found it.
+  const OtherSource& other_source() const { return source_; }
   MotionMonitor& monitor() { return *monitor_; }
   const MotionMonitor& monitor() const { return *monitor_; }
   MotionLimits& limits() { return monitor_->limits(); }
@@ -190,7 +192,7 @@ class Motion {
   std::uint8_t node_;
   MotionOptions options_;
   Power power_;
-  OtherSource source_;  ///< As look_at_drive() found it.
+  OtherSource source_;
   std::unique_ptr<MotionUnits> units_;
   std::unique_ptr<MotionMonitor> monitor_;
   std::unique_ptr<MotionGuard> guard_;

@@ -37,7 +37,7 @@ Result<void> Motion::intend(const Purpose& purpose) {
 }
 
 Result<std::vector<PreflightItem>> Motion::look_at_drive(bool chinese) {
-  auto source = other_source(*session_, *units_, owed().values);
+  auto source = motion::other_source(*session_, *units_, owed().values);
   if (!source) return fail(source.error());
   source_ = std::move(*source);
   return preflight(*session_, *units_, node_, chinese, request());

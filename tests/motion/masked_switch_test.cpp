@@ -33,7 +33,7 @@ TEST(MaskedSwitch, HomingToALimitInputThatIsForcedOnIsRefusedAsDelivered) {
   MotionBench bench("gsd600", 131072);
   for (const auto* method : {"1", "17", "27", "11"})
     expect_refused(bench, method, "needs the negative limit switch, which the drive ignores: Pn0603 = 3",
-                   "`param set Pn0603=0 -n 1` and restart the drive");
+                   "`param set Pn0603=0 -n 1 --keep` and restart the drive");
   for (const auto* method : {"2", "7", "18", "23"})
     expect_refused(bench, method, "needs the positive limit switch, which the drive ignores: Pn0603 = 3",
                    "Pn0603=0");

@@ -124,15 +124,15 @@ TEST_F(QuickStop, OfCia402TakesSlowDownOrQuickStopRamp) {
 }
 
 TEST_F(QuickStop, OfDrivesWithout605AhTakesTheRampThatTheyHave) {
-  build("da200");  // 6085h is a time in ms.
+  build("da200");  // 6085h is a time in ms, that from 3000 rpm.
   enable();
   ASSERT_EQ(write(kQuickStopDeceleration, 30'000), 0U);
   ASSERT_EQ(write_amount(kTargetVelocity, 100), 0U);
   run(20s);
-  expect_near(stop(), 1s);
+  EXPECT_GT(stop(), 300ms);
   build("ts");
   turn(0, 300, 1, 1);
-  EXPECT_GT(stop(), 100ms) << "6084h (assumed)";
+  expect_near(stop(), 30ms);  // 300 rpm by 6084h = 300 ms (assumed).
 }
 
 TEST_F(QuickStop, WithTheMostTorqueTakesTime) {
