@@ -20,7 +20,7 @@ namespace servoctl::sim {
 /// What makes a drive a CANopen node: SDO server, PDOs, NMT slave, boot-up, heartbeat, node guarding, the
 /// heartbeats it watches, emergencies under the COB-ID of 1014h.
 ///
-/// An NMT reset of the node restarts the drive as a power cycle does.
+/// An NMT reset of the node restarts the drive (DriveModel::reset_node).
 class CanPort final : public Device, private DrivePort {
  public:
   /// `model` outlives the port and has no other.

@@ -45,7 +45,7 @@ TEST(AddressChange, ADriveThatIsSwitchedOffAndOnIsWaitedFor) {
   world.hooks.on_time = [&](TimePoint now) {
     if (switched || now < at) return;
     switched = true;
-    (void)world.bus.send(*can::parse_frame("000#8103"));
+    world.switch_off_and_on(0);
   };
   const auto outcome = move_to(world, 3, 5, {.unlock = true, .patience = 60s});
   EXPECT_EQ(outcome.end, AddressEnd::moved) << (outcome.error ? outcome.error->message : "");

@@ -73,6 +73,14 @@ class AddressWorld {
     if (session) session::be_wary_of_family(*session, node, family);
     return *drives.back();
   }
+  /// Where an NMT reset is no restart: a drive with the memory of this one takes its place.
+  void switch_off_and_on(std::size_t drive) {
+    const auto node = static_cast<std::uint8_t>(drives[drive]->node());
+    drives[drive]->fall_silent_at(bus.now());
+    switched_off.push_back(std::move(drives[drive]));
+    drives[drive] = std::make_unique<sim::SimDrive>(profile, node, memory, std::to_string(drive + 1));
+    bus.attach(*drives[drive]);
+  }
   void restart_session(std::unique_ptr<can::Bus> other = nullptr) {
     if (!other) other = std::make_unique<HookedBus>(bus, hooks, sent);
     session::Options network;
@@ -102,6 +110,7 @@ class AddressWorld {
   sim::Memory memory;
   sim::SimBus bus{sim::SimBus::Clock::virtual_time};
   std::vector<std::unique_ptr<sim::SimDrive>> drives;
+  std::vector<std::unique_ptr<sim::SimDrive>> switched_off;
   BusHooks hooks;
   std::vector<std::string> sent;
   std::unique_ptr<session::Session> session;
