@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/decade.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "drive/rules.hpp"
@@ -66,8 +67,8 @@ void Axis::take_point() {
 /// 60C2h: value by power of ten, in seconds.
 Duration Axis::interpolation_period() const {
   const auto& limits = profile_->rules.motion.interpolation_ms;
-  const double ms =
-      read(objects::kInterpolationPeriod) * std::pow(10, read(objects::kInterpolationIndex) + 3);
+  const double ms = read(objects::kInterpolationPeriod) *
+                    power_of_ten(static_cast<int>(read(objects::kInterpolationIndex)) + 3);
   const double taken = std::clamp<double>(ms, limits.front(), limits.back());
   return std::chrono::microseconds(std::llround(taken * 1000));
 }

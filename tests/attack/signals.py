@@ -82,9 +82,8 @@ class Drive:
             bus = bus.format(name=f"signals-{os.getpid()}-{pair}", port=free.getsockname()[1])
         self.env = {**os.environ, "SERVOCTL_BUS": bus, "SERVOCTL_NODE": "1", "SERVOCTL_DRIVE": family,
                     "XDG_STATE_HOME": folder, "TERM": "xterm"}
-        self.spec, self.trace = f"{family}@1", os.path.join(folder, f"{pair}.pcap")
-        if panel and self.ask("read", "0x6041", "-b", f"sim:{family}@1?panel={panel}"):
-            self.spec += f"?panel={panel}"
+        self.spec = f"{family}@1?panel={panel}" if panel else f"{family}@1"
+        self.trace = os.path.join(folder, f"{pair}.pcap")
         self.simulator = self.master = None
         self.begin, self.last, self.lines = "enable -y\n", "watch statusword --every 2ms --for 60s\n", "status\nobjects\n"
         self.off = [["disable"]]
