@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "fleet.hpp"
+#include "tests/sim/commissioned.hpp"
 
 namespace servoctl::cabinet {
 namespace {
@@ -96,6 +97,7 @@ TEST_F(CabinetDisplaced, APlaceThatAnotherHasIsNotTaken) {
 }
 
 TEST_F(CabinetDisplaced, AnEnergisedDriveStaysWhereItIs) {
+  sim::commission(fleet.drive(0).model());
   for (const std::uint64_t word : {0x06U, 0x07U, 0x0FU})
     ASSERT_EQ(fleet.drive(0).model().write({0x6040, 0}, store_le(word, 2)), 0U);
   ASSERT_TRUE(apply());

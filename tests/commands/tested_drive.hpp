@@ -15,6 +15,7 @@
 #include "command/registry.hpp"
 #include "session/wary.hpp"
 #include "sim/cell.hpp"
+#include "tests/sim/commissioned.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::commands {
@@ -65,6 +66,7 @@ class TestedDrive : public testing::Test {
     auto built = sim::build_cell(spec, folders, sim_bus.now());
     ASSERT_TRUE(built) << built.error().message;
     cell = std::move(*built);
+    sim::commission(cell);
     for (const auto& one : cell.drives) sim_bus.attach(*one);
     auto profile = drive::load_profile(family, folders);
     ASSERT_TRUE(profile);
