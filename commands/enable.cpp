@@ -167,7 +167,12 @@ class Enabling {
     std::set<std::uint8_t> nodes;
     for (const auto node : begun_)
       if (context_->session->energised().contains(node)) nodes.insert(node);
-    for (const auto& [node, done, fault] : motion::de_energise(*context_->session, nodes)) {
+    for (const auto& [node, done, in_fault] : motion::de_energise(*context_->session, nodes)) {
+      if (in_fault) {
+        context_->errors.push_back(motion::ended_in_fault(node));
+        taken_back_.insert(node);
+        continue;
+      }
       if (done) {
         context_->notices.push_back(
             fmt::format("node {} had been enabled by this line; it has been stopped and disabled", node));

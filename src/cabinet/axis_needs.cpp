@@ -15,11 +15,6 @@
 namespace servoctl::cabinet {
 namespace {
 
-bool is_locked(const drive::Profile& profile, const od::Parameter* parameter) {
-  const auto& locked = profile.rules.store.locked;
-  return parameter != nullptr && std::find(locked.begin(), locked.end(), parameter->id) != locked.end();
-}
-
 Result<bool> is_energised(session::Session& session, std::uint8_t node) {
   const auto word = session.upload(node, objects::kStatusword);
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
@@ -91,7 +86,8 @@ Result<std::vector<AxisNeed>> needs_of(session::Session& session, const drive::P
     const bool is_place = settings::is_address(&profile, object);
     if (effect == od::Effect::restart && !is_place) add_need(out, AxisNeed::Kind::restart, who);
     if (effect == od::Effect::standstill) add_need(out, AxisNeed::Kind::standstill, who);
-    if (is_locked(profile, target.parameter)) add_need(out, AxisNeed::Kind::password, who);
+    if (target.parameter != nullptr && profile.rules.store.locks(target.parameter->id))
+      add_need(out, AxisNeed::Kind::password, who);
   }
   if (session::needs_pre_operational(&profile, plan)) {
     const auto state = session::ask_state(session, node);

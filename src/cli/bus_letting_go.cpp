@@ -73,14 +73,9 @@ void BusHolder::stop_and_disable() {
 }
 
 void BusHolder::stop_and_disable(session::Session& session) {
-  for (const auto& [node, done, ends_in_fault] : motion::de_energise(session)) {
-    if (done && ends_in_fault)
-      fail_closing(
-          names(session),
-          drive_error(Errc::negative, node,
-                      "it was still energised; it is de-energised now, but in fault, and may not have "
-                      "obeyed the stop",
-                      "`fault show` shows the fault"));
+  for (const auto& [node, done, in_fault] : motion::de_energise(session)) {
+    if (in_fault)
+      fail_closing(names(session), motion::ended_in_fault(node));
     else if (done)
       console_->err("notice: " + names(session).in(motion::disabled_notice(node)) + "\n");
     else

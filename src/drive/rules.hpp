@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -98,7 +99,7 @@ struct PdoRules {
   std::uint32_t cob_id_bits = 0xFFFF'FFFF;  ///< Bits of the COB-ID that may change.
   When parameters = When::always;           ///< When transmission type and times may change.
   When mapping = When::always;
-  bool inhibit_while_valid = false;  ///< The inhibit time may change while the PDO is valid.
+  bool inhibit_while_valid = false;  ///< Inhibit time and SYNC start value may change while the PDO is valid.
   bool clears_entries = false;       ///< Count 0 clears the entries as well.
   bool disable_by_count = false;     ///< The mapping is opened by count 0 alone; the COB-ID stays valid.
   std::uint8_t most_entries = 64;
@@ -163,7 +164,10 @@ struct StoreRules {
   std::string unlock;  ///< Parameter that holds the password.
   std::optional<std::int64_t> unlock_open;
   std::optional<std::int64_t> unlock_closed;
-  std::vector<std::string> locked;    ///< Parameters the password guards.
+  std::vector<std::string> locked;  ///< Parameters the password guards.
+  bool locks(std::string_view parameter) const {
+    return std::find(locked.begin(), locked.end(), parameter) != locked.end();
+  }
   std::string restore_at_start;       ///< Parameter: 1 restores the defaults at the next start.
   std::string clear_alarms_at_start;  ///< Parameter: 1 clears the alarm records at the next start.
   /// A value that needs standstill is taken while the drive is enabled, and takes effect once it is disabled;
@@ -229,7 +233,8 @@ struct FaultRules {
   std::vector<Setting> reset;  ///< What resets a fault beside the controlword.
   bool by_controlword = true;
   std::string alarm;  ///< Parameter or object that holds the panel's alarm number.
-  std::string ramp;   ///< Object by whose ramp the reaction stops the motor; empty: it is de-energised at once.
+  std::string
+      ramp;  ///< Object by whose ramp the reaction stops the motor; empty: it is de-energised at once.
   std::string length_alarm;     ///< Panel text of the alarm a write of a wrong length raises.
   std::string mapping_alarm;    ///< … of mapping in Operational.
   std::string range_alarm;      ///< … of a value out of range.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,17 +10,23 @@
 
 namespace servoctl::motion {
 
-/// Why a drive takes no commands from this bus, by the parameters that the family's data name (`[nmt]
-/// needs`); empty where they do not say.
+/// A parameter that keeps a drive from taking commands from this bus (`[nmt] needs` of the family's data).
 struct OtherSource {
-  std::string cause;   ///< "P0.03 is 0, and 7 is needed for CANopen"
-  std::string remedy;  ///< "`param set P0.03=7 -n 1` and restart the drive"
-  bool is_known() const { return !cause.empty(); }
+  std::string name;
+  double in_force = 0;      ///< Where it does not wait.
+  std::int64_t needed = 0;  ///< What it has to be.
+  bool waits = false;       ///< It is set to that, and waits for a restart.
+
+  /// "P0.03 is 0, and 7 is needed for CANopen", "P0.03 = 7 waits for a restart".
+  std::string cause() const;
+  /// "`param set P0.03=7 -n 1` and restart the drive".
+  std::string remedy(const drive::Profile& profile, std::uint8_t node) const;
 };
 
-/// Judged by the values in force: where one waits for a restart, the value before it. Only reads. Errors are
-/// those of the transfers; a parameter that the drive refuses to give says nothing.
-Result<OtherSource> other_source(session::Session& session, const MotionUnits& units, const OwedValues& owed);
+/// The first of them, judged by the values in force: where one waits for a restart, the value before it. Only
+/// reads. Errors are those of the transfers; a parameter that the drive refuses to give says nothing.
+Result<std::optional<OtherSource>> other_source(session::Session& session, const MotionUnits& units,
+                                                const OwedValues& owed);
 
 /// The line that sets a parameter so that it is still set after a restart:
 /// "param set Fn_00=20 -n 1 --unlock --keep".

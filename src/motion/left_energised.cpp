@@ -18,6 +18,15 @@ std::string disabled_notice(std::uint8_t node) {
   return fmt::format("node {} was still energised; it has been stopped and disabled", node);
 }
 
+Error ended_in_fault(std::uint8_t node) {
+  return drive_error(
+      Errc::negative, node,
+      fmt::format("it had been enabled; it is de-energised now, but in fault, and may not have "
+                  "obeyed the stop: `fault show -n {}` shows the fault",
+                  node),
+      "find the cause of the fault before the drive is enabled again");
+}
+
 std::string power_warning(std::uint8_t node, std::string_view why) {
   return fmt::format("NODE {} MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY: {}", node, why);
 }
@@ -68,7 +77,11 @@ void tell_left_energised(show::Desk& desk, const std::set<std::uint8_t>& nodes) 
 }
 
 void stop_left_energised(show::Desk& desk) {
-  for (const auto& [node, done, fault] : de_energise(*desk.session)) {
+  for (const auto& [node, done, in_fault] : de_energise(*desk.session)) {
+    if (in_fault) {
+      desk.errors.push_back(ended_in_fault(node));
+      continue;
+    }
     if (done) {
       desk.notices.push_back(disabled_notice(node));
       continue;

@@ -18,6 +18,9 @@ std::string disabled_notice(std::uint8_t node);
 /// Of one whose power could not be taken away: what the user has to do, and why.
 std::string power_warning(std::uint8_t node, std::string_view why);
 
+/// Of one that was enabled, and is in fault where it should be stopped and disabled.
+Error ended_in_fault(std::uint8_t node);
+
 /// Looks whether these drives, which were told to be energised through this session, are, and says so of each
 /// in the notices; of one that does not tell in the errors. Does not hear Ctrl-C.
 void tell_left_energised(show::Desk& desk, const std::set<std::uint8_t>& nodes);

@@ -152,7 +152,7 @@ class Motion {
 
   const MotionUnits& units() const { return *units_; }
   /// Why the drive may not obey, as look_at_drive() found it.
-  const OtherSource& other_source() const { return source_; }
+  const std::optional<OtherSource>& other_source() const { return source_; }
   MotionMonitor& monitor() { return *monitor_; }
   const MotionMonitor& monitor() const { return *monitor_; }
   MotionLimits& limits() { return monitor_->limits(); }
@@ -192,7 +192,7 @@ class Motion {
   std::uint8_t node_;
   MotionOptions options_;
   Power power_;
-  OtherSource source_;
+  std::optional<OtherSource> source_;
   std::unique_ptr<MotionUnits> units_;
   std::unique_ptr<MotionMonitor> monitor_;
   std::unique_ptr<MotionGuard> guard_;

@@ -38,7 +38,7 @@ class MotionGuard {
   /// From now on nothing is sent: what would be goes there, which outlives this. To be called first.
   void rehearse(session::Rehearsal& rehearsal) { rehearsal_ = &rehearsal; }
   /// As Power::set_other_source().
-  void set_other_source(OtherSource source) { power_.set_other_source(std::move(source)); }
+  void set_other_source(std::optional<OtherSource> source) { power_.set_other_source(std::move(source)); }
 
   /// Writes an object, after its value was kept; end() puts it back. The first time one that holds the bytes
   /// already is not written. One that was written before is written again without a look: a motor that is to

@@ -103,8 +103,9 @@ Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
                           drive::name(now_in), statusword_);
   std::string hint;
   const bool fault = now_in == DriveState::fault || now_in == DriveState::fault_reaction_active;
-  if (!fault && source_.is_known())
-    return drive_error(Errc::negative, node_, fmt::format("{}: {}", what, source_.cause), source_.remedy);
+  if (!fault && source_)
+    return drive_error(Errc::negative, node_, fmt::format("{}: {}", what, source_->cause()),
+                       source_->remedy(*profile_, node_));
   if (fault)
     hint = "`fault show` shows the fault";
   else if (tells(kRemote) && (statusword_ & kRemote) == 0)
@@ -188,8 +189,7 @@ std::vector<DeEnergised> de_energise(session::Session& session, const std::set<s
   }
   const auto done = take_down(session, plans);
   for (std::size_t i = 0; i < plans.size(); ++i)
-    out.push_back({plans[i].node, done[i].outcome,
-                   done[i].state() == DriveState::fault && done[i].found != DriveState::fault});
+    out.push_back({plans[i].node, done[i].outcome, done[i].outcome && done[i].state() == DriveState::fault});
   return out;
 }
 

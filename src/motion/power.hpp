@@ -37,7 +37,7 @@ class Power {
       : session_(&session), profile_(&profile), node_(node) {}
 
   /// What reach() names where the drive does not follow: nothing is read then, as stop words come first.
-  void set_other_source(OtherSource source) { source_ = std::move(source); }
+  void set_other_source(std::optional<OtherSource> source) { source_ = std::move(source); }
   Result<std::uint16_t> statusword();
   Result<drive::DriveState> state();
   /// Writes the controlword (6040h) as it is; nothing is waited for.
@@ -77,15 +77,15 @@ class Power {
   const drive::Profile* profile_;
   std::uint8_t node_;
   std::uint16_t statusword_ = 0;  ///< Read last.
-  OtherSource source_;
+  std::optional<OtherSource> source_;
 };
 
-/// What came of stopping and disabling one drive.
+/// The end of stopping and disabling one drive.
 struct DeEnergised {
   std::uint8_t node = 0;
   Result<void> outcome;
-  /// It is without power, but in fault, and was not seen so before it was commanded.
-  bool ends_in_fault = false;
+  /// De-energised, but in fault: whether it obeyed the stop is not known.
+  bool in_fault = false;
 };
 
 /// Stops and disables these drives, all at the same time. Does not hear Ctrl-C.

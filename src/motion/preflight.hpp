@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,9 +33,9 @@ std::string_view name(PreflightItem::Weight weight);  ///< `ok note caution stop
 struct PreflightRequest {
   std::optional<Purpose> purpose = {};  ///< Cautions of other motions are left out; empty: none is.
   PanelValues panel = {};
-  bool ignores_remote = false;  ///< Goes on although bit 9 of the statusword is 0.
-  show::OwedRestart owed = {};  ///< What waits for a restart, so that the drive does not go by it.
-  OtherSource source = {};      ///< Why the drive may not obey, by its parameters.
+  bool ignores_remote = false;             ///< Goes on although bit 9 of the statusword is 0.
+  show::OwedRestart owed = {};             ///< What waits for a restart, so that the drive does not go by it.
+  std::optional<OtherSource> source = {};  ///< Why the drive may not obey, by its parameters.
 };
 
 /// What there is to know before the drive is energised: state, warnings, inputs, limits, the family's

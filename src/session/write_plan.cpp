@@ -27,7 +27,7 @@ std::optional<std::uint16_t> block_of(std::uint16_t index) {
 /// What can change while a PDO is valid.
 struct WhileValid {
   bool mapping = false;  ///< Opened by its count; the COB-ID stays as it is where it does not change.
-  bool inhibit = false;  ///< The inhibit time.
+  bool timing = false;   ///< Inhibit time and SYNC start value.
 };
 
 /// The writes of one PDO, or of one assignment.
@@ -42,8 +42,9 @@ class BlockPlan {
     if (has_cob_id) now_ = present.at(cob_id_);
     const bool valid = has_cob_id && (number(present, cob_id_) & canopen::kPdoInvalid) == 0;
     const auto place = canopen::pdo_at(block);
-    const bool inhibit = place && place->direction == canopen::PdoDirection::transmit && differs({block, 3});
-    if (valid && (!may.mapping || differs(cob_id_) || (inhibit && !may.inhibit)))
+    const bool transmits = place && place->direction == canopen::PdoDirection::transmit;
+    const bool timing = transmits && (differs({block, 3}) || differs({block, 6}));
+    if (valid && (!may.mapping || differs(cob_id_) || (timing && !may.timing)))
       now_ = store_le(number(present, cob_id_) | canopen::kPdoInvalid, 4);
   }
 

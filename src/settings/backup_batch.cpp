@@ -68,11 +68,6 @@ std::string value_text(const drive::Meaning& meaning, od::DataType type, ObjectA
   return number ? bits : "hex:" + to_hex(data, "");
 }
 
-bool is_locked(const drive::Profile& profile, const od::Parameter& parameter) {
-  const auto& locked = profile.rules.store.locked;
-  return std::find(locked.begin(), locked.end(), parameter.id) != locked.end();
-}
-
 /// The lines of a backup: settings in rising address, each PDO as a procedure.
 class Lines {
  public:
@@ -177,7 +172,7 @@ std::string write_line(const drive::Profile* profile, std::uint8_t node, ObjectA
   const auto* parameter = drive::target_at(profile, object).parameter;
   const auto words = worded_value(profile, node, object, data);
   const bool harmless = words.type != od::DataType::string && is_harmless(words.value);
-  const bool locked = parameter != nullptr && is_locked(*profile, *parameter);
+  const bool locked = parameter != nullptr && profile->rules.store.locks(parameter->id);
   const auto options = (words.typed ? fmt::format(" --type {}", od::name(words.type)) : std::string()) +
                        (locked ? " --unlock" : "");
   const bool set = words.panel && !words.typed;

@@ -131,10 +131,11 @@ bool DriveModel::set_on_panel(const std::string& id, std::int64_t value) {
     return true;
   }
   const auto* entry = profile_->dictionary.find(*found->object);
-  const auto typed = entry == nullptr ? Result<od::Value>(std::int64_t{0})
-                                      : od::parse_value(entry->type, fmt::to_string(value));
-  const auto bytes = entry == nullptr || !typed ? Result<Bytes>(Bytes()) : od::encode(entry->type, *typed);
-  if (!bytes || bytes->empty() || values_.check_write(*found->object, *bytes, node_) != 0) return false;
+  if (entry == nullptr) return false;
+  const auto typed = od::parse_value(entry->type, fmt::to_string(value));
+  if (!typed) return false;
+  const auto bytes = od::encode(entry->type, *typed);
+  if (!bytes || values_.check_write(*found->object, *bytes, node_) != 0) return false;
   memory_->cells(key_)[*found->object] = *bytes;
   values_.set(*found->object, *bytes);
   values_.start();

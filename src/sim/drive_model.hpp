@@ -132,7 +132,8 @@ class DriveModel final : public canopen::ObjectStore {
   bool is_moving() const { return axis_.is_moving(); }
   /// What its objects hold, past the checks of read().
   const ObjectValues& values() const { return values_; }
-  /// Sets a parameter as on its panel while the drive has no power; false for one the family does not have.
+  /// Sets a parameter as on the panel, before the drive starts; false for one that the family does not have,
+  /// or that does not take the value.
   bool set_on_panel(const std::string& id, std::int64_t value);
   /// What a panel parameter is set to, as it took effect; empty where the family has none of this name.
   std::optional<std::uint64_t> setting(const std::string& id) const;
@@ -164,7 +165,7 @@ class DriveModel final : public canopen::ObjectStore {
   bool is_enabled() const { return power_.state() == drive::DriveState::operation_enabled; }
   Axis::Drive motor_drive() const;
   void begin_stop(const std::string& ramp);
-  void begin_quick_stop(std::uint16_t controlword);
+  void give_controlword(std::uint16_t controlword);
   bool obeys_bus() const;
   bool is_locked(ObjectAddress object) const;
   bool is_kept(ObjectAddress object) const;

@@ -54,7 +54,7 @@ void DriveModel::on_master_lost(std::uint16_t code, TimePoint now) {
   begin_error(ErrorLog::Source::master, code);
   if (option == kDisable) power_.disable();
   move_axis();
-  if (option == kQuickStop) begin_quick_stop(kQuickStopWord);
+  if (option == kQuickStop) give_controlword(kQuickStopWord);
 }
 
 /// Some families take a wrong access for a fault of the drive.

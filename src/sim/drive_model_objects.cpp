@@ -191,13 +191,13 @@ bool DriveModel::obeys_bus() const {
 
 void DriveModel::on_controlword(std::uint16_t controlword) {
   if (!obeys_bus() || feigns(controlword)) return;
-  begin_quick_stop(controlword);
+  give_controlword(controlword);
   if (power_.was_reset()) clear_fault();
   axis_.on_controlword(controlword, motor_drive(), now_);
 }
 
 /// Gives the controlword to the power stage; where that begins a quick stop, 605Ah says by which ramp.
-void DriveModel::begin_quick_stop(std::uint16_t controlword) {
+void DriveModel::give_controlword(std::uint16_t controlword) {
   const auto option = static_cast<std::int64_t>(values_.number(objects::kQuickStopOption));
   const auto before = power_.state();
   power_.on_controlword(controlword, option, may_reset(), now_);

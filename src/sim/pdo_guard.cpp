@@ -47,9 +47,9 @@ std::uint32_t PdoGuard::check(ObjectAddress object, ByteSpan data, bool operatio
     return check_cob_id(object, static_cast<std::uint32_t>(value));
   }
   if (!allowed(rules.parameters, object.index, operational)) return abort::kDeviceState;
-  // 7.5.2.37: the inhibit time changes only while the PDO is invalid.
-  if (object.sub == 3 && place->direction == PdoDirection::transmit && !rules.inhibit_while_valid &&
-      is_valid(object.index) && value != values_->number(object))
+  // 7.5.2.37: inhibit time and SYNC start value change only while the PDO is invalid.
+  if ((object.sub == 3 || object.sub == 6) && place->direction == PdoDirection::transmit &&
+      !rules.inhibit_while_valid && is_valid(object.index) && value != values_->number(object))
     return abort::kRange;
   const bool known = object.sub != 2 || knows_type(*place, static_cast<std::uint8_t>(value));
   return known ? 0 : abort::kRange;

@@ -215,7 +215,7 @@ TEST_F(EnergisedLines, ADriveThatEndsInFaultInsteadOfObeyingReachesTheExitCode) 
     ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
     (void)run("watch statusword -n 1 --for 500ms");
     shell->let_go();
-    EXPECT_TRUE(says("node 1: it was still energised; it is de-energised now, but in fault")) << all();
+    EXPECT_TRUE(says("node 1: it had been enabled; it is de-energised now, but in fault")) << all();
     EXPECT_FALSE(says("it has been stopped and disabled")) << all();
     EXPECT_EQ(shell->close(code), code == 5 ? 5 : 1) << all();
   }

@@ -5,7 +5,7 @@
 
 namespace servoctl {
 
-/// What a simulated drive of this family needs behind its place to obey 6040h: `sim:ts@1?panel=Fn_00=20`. As
+/// The options with which a simulated drive of this family obeys 6040h: `sim:ts@1?panel=Fn_00=20`. As
 /// delivered, some select another source of commands.
 inline std::string obeying(std::string_view family) {
   if (family == "ts") return "?panel=Fn_00=20";

@@ -67,6 +67,26 @@ TEST_P(ReplayEveryFamily, CtrlCStopsAndDisablesTheDrive) {
   EXPECT_FALSE(told.back());
 }
 
+TEST_F(Replay, ADriveThatIsInFaultAfterCtrlCIsAnError) {
+  build("gsd600@1", "gsd600");
+  bool is_stopping = false;
+  session->options().cancelled = [&] {
+    is_stopping = is_stopping || drive().power_state() == DriveState::operation_enabled;
+    return is_stopping;
+  };
+  bus->on_receive = [&](can::Frame& frame) {
+    const bool takes_stop =
+        is_stopping && frame.id == 0x581 && frame.data[0] == 0x60 && frame.data[1] == 0x40;
+    if (takes_stop && drive().power_state() == DriveState::quick_stop_active)
+      drive().raise_fault(0x8611, {}, sim_bus.now());
+  };
+  ASSERT_FALSE(replay(std::string(kEnable) + "(9.000000) can0 080#\n"));
+  ASSERT_FALSE(context.errors.empty());
+  EXPECT_NE(context.errors.front().message.find("de-energised now, but in fault"), std::string::npos)
+      << context.errors.front().message;
+  EXPECT_FALSE(is_noticed("stopped and disabled"));
+}
+
 TEST_P(ReplayEveryFamily, SaysThatADriveIsLeftEnergised) {
   build(std::string(GetParam()) + "@1", GetParam());
   ASSERT_TRUE(replay(kEnable));

@@ -54,6 +54,14 @@ TEST(PlanOfWrites, OpensAMappingByItsCountAloneWhereTheFamilyDoes) {
             (Steps{"0x1A00:0=00", "0x1A00:1=20006460", "0x1A00:0=01", "0x1800:2=FE"}));
 }
 
+TEST(PlanOfWrites, SwitchesATpdoOffForItsSyncStartValue) {
+  const auto present = with(kPresent, {{{0x1800, 6}, {0}}});
+  drive::Profile profile;
+  profile.rules.pdo.disable_by_count = true;
+  EXPECT_EQ(told(plan_writes(&profile, present, with(present, {{{0x1800, 6}, {3}}}))),
+            (Steps{"0x1800:1=810100C0", "0x1800:6=03", "0x1800:1=81010040"}));
+}
+
 TEST(PlanOfWrites, SwitchesATpdoOffForItsInhibitTimeUnlessTheFamilyNeedsNot) {
   const auto present = with(kPresent, {{{0x1800, 3}, {0, 0}}});
   const auto wanted = with(present, {{{0x1800, 3}, {100, 0}}});

@@ -136,6 +136,14 @@ TEST_F(Mapping, TheInhibitTimeStaysWhileThePdoIsValid) {  // CiA 301, 7.5.2.37
   EXPECT_EQ(sdo("601#2B00180364000000").substr(0, 6), kTaken);
 }
 
+TEST_F(Mapping, TheSyncStartValueStaysWhileThePdoIsValid) {  // CiA 301, 7.5.2.37
+  boot("dm");
+  ASSERT_EQ(sdo("601#2300180181010000").substr(0, 6), kTaken);
+  EXPECT_EQ(sdo("601#2F00180603000000"), "581#8000180630000906");
+  ASSERT_EQ(sdo("601#2300180181010080").substr(0, 6), kTaken);
+  EXPECT_EQ(sdo("601#2F00180603000000").substr(0, 6), kTaken);
+}
+
 TEST_F(Mapping, OfTheTsTheInhibitTimeChangesWhileThePdoIsValid) {  // 1771, 1794
   boot("ts");
   EXPECT_EQ(sdo("601#2B00180364000000").substr(0, 6), kTaken);

@@ -54,7 +54,7 @@ class CellTest : public testing::Test {
   SimBus bus{SimBus::Clock::virtual_time};
 };
 
-/// One drive that is set up to obey its bus, and is told what to do by SDO.
+/// One drive that obeys its bus, and is commanded by SDO.
 class DrivenTest : public CellTest {
  protected:
   void boot(const std::string& family) {

@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 
 struct Printed {
-  unsigned line = 0;  ///< The first of the manual that it stands in.
+  unsigned line = 0;  ///< Its first line in the manual.
   std::string frame;  ///< What the master sends.
 };
 
