@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Signals, SIGKILL among them, single and in pairs up to 5 ms apart, at a random moment: in a motion, in a batch and at a
 prompt with a drive enabled; while the output is read, is not read, or goes to a terminal that is held, and while nobody
-reads the trace. Every family on its own bus, the ts over Modbus as well, and `servoctl gateway` with its clients.
+reads the trace. Every family on its own bus, the ts over Modbus as well, one drive behind a serial adapter, a socketcand server and on
+vcan0 (where there is one), and `servoctl gateway` with its clients.
 Afterwards the process has ended, the exit code says so, and the drive is de-energised where docs/safety.md promises it.
-usage: signals.py SERVOCTL COUNT [SEED [PAIR]]; PAIR is one of gsd600, dm, da200, ts, sv2, ts-modbus, gateway"""
+usage: signals.py SERVOCTL COUNT [SEED [PAIR]]; PAIR is one of gsd600, dm, da200, ts, sv2, ts-modbus, gateway, slcan, socketcand, vcan"""
 import fcntl
 import json
 import os
@@ -19,6 +20,10 @@ import tempfile
 import termios
 import time
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
+from serial_adapters import Adapter, Wire  # noqa: E402
+from socketcand_server import Server  # noqa: E402
+
 servoctl, count = sys.argv[1], int(sys.argv[2])
 seed = int(sys.argv[3]) if len(sys.argv) > 3 else 1
 rng = random.Random(seed)
@@ -29,8 +34,11 @@ PAIRS = {"gsd600": ("gsd600", "local:{name}", "", ["--turn", "131072"]),
          "ts": ("ts", "local:{name}", "Fn_00=20", ["--turn", "10000"]),
          "sv2": ("sv2", "coe:local:{name}", "", []),
          "ts-modbus": ("ts", "modbus://127.0.0.1:{port}", "", []),
-         "gateway": ("gsd600", "local:{name}", "", [])}
-pairs = sys.argv[4:5] or list(PAIRS)
+         "gateway": ("gsd600", "local:{name}", "", []),
+         "slcan": ("gsd600", "slcan:{adapter}@500k", "", ["--turn", "131072"]),
+         "socketcand": ("gsd600", "socketcand://127.0.0.1:{server}/vcan0", "", ["--turn", "131072"]),
+         "vcan": ("gsd600", "vcan0", "", ["--turn", "131072"])}
+pairs = sys.argv[4:5] or [pair for pair in PAIRS if pair != "vcan" or os.path.exists("/sys/class/net/vcan0")]
 SIGNALS = ["INT", "TERM", "HUP", "QUIT", "TSTP", "USR1", "KILL"]
 # These end what is running, and not a prompt.
 INTERRUPTS = {"INT", "TSTP"}
@@ -78,8 +86,13 @@ class Drive:
     def __init__(self, pair, folder):
         family, bus, panel, self.turn = PAIRS[pair]
         self.pair, self.folder = pair, folder
+        wire, form = Wire(), bus
         with socket.create_server(("127.0.0.1", 0)) as free:
-            bus = bus.format(name=f"signals-{os.getpid()}-{pair}", port=free.getsockname()[1])
+            names = {"name": f"signals-{os.getpid()}-{pair}", "port": free.getsockname()[1],
+                     "server": Server().port if pair == "socketcand" else 0}
+        # Who has a serial adapter has it alone: the simulator, what is attacked, and who looks have one each.
+        buses = [form.format(**names, adapter=Adapter(wire).path if pair == "slcan" else "") for _ in range(3)]
+        bus, self.simulated, self.attacked = buses
         self.env = {**os.environ, "SERVOCTL_BUS": bus, "SERVOCTL_NODE": "1", "SERVOCTL_DRIVE": family,
                     "XDG_STATE_HOME": folder, "TERM": "xterm"}
         self.spec = f"{family}@1?panel={panel}" if panel else f"{family}@1"
@@ -99,7 +112,7 @@ class Drive:
 
     def start(self):
         trace = ["--trace", self.trace, "-y"] if self.pair == "sv2" else []
-        self.simulator = subprocess.Popen([servoctl, *trace, "sim", self.spec], env=self.env, stdout=subprocess.DEVNULL)
+        self.simulator = subprocess.Popen([servoctl, *trace, "sim", self.spec, "-b", self.simulated], env=self.env, stdout=subprocess.DEVNULL)
         if not until(lambda: self.energised() is False, 20):
             sys.exit(f"signals.py: no simulated drive answers: {self.pair}")
 
@@ -147,7 +160,7 @@ class Run:
             command = ["run", script, *rng.choice(FORMS)]
         if place == "last line of input":
             command = ["run", "-", *rng.choice(FORMS)]
-        listen, env = os.path.join(drive.folder, f"gateway{number}"), drive.env
+        listen, env = os.path.join(drive.folder, f"gateway{number}"), {**drive.env, "SERVOCTL_BUS": drive.attacked}
         gateway = ["gateway", "--allow", "write", "--listen", listen, "-y"]
         if place in SERVED:
             command = gateway
