@@ -81,6 +81,7 @@ class Monitor {
         log_(&log),
         view_(view),
         load_(bitrate, context.session->now()),
+        fd_before_(context.session->can()->bus().fd_frames()),
         begin_(context.session->now()) {}
 
   /// The PDOs of the nodes were read; `lifetimes`, one of each, began before that.
@@ -105,6 +106,7 @@ class Monitor {
 
   report::Record summary() const {
     const auto now = context_->session->now();
+    const auto fd_frames = context_->session->can()->bus().fd_frames() - fd_before_;
     const auto seconds = std::chrono::duration<double>(now - begin_).count();
     const auto percent = [](std::optional<double> load) {
       return load ? Value(std::round(*load * 10) / 10) : Value();
@@ -114,6 +116,8 @@ class Monitor {
     for (const auto& [service, count] : log_->services()) services.rows.push_back({service, count});
     return {
         {"frames", log_->count()},
+        {"fd_frames", fd_frames, fd_frames > 0 ? report::Show::everywhere : report::Show::json,
+         "CAN FD frames, not read"},
         {"seconds", std::round(seconds * 1000) / 1000},
         {"frames_per_second",
          seconds > 0 ? Value(std::round(static_cast<double>(log_->count()) / seconds)) : Value(),
@@ -190,6 +194,7 @@ class Monitor {
   traffic::FrameLog* log_;
   show::LiveView* view_;
   traffic::BusLoad load_;
+  std::uint64_t fd_before_;  ///< CAN FD frames that had come before.
   TimePoint begin_;
   can::WireErrors errors_;
   std::size_t lost_ = 0;

@@ -173,11 +173,20 @@ void take_cycles(Context& context, show::SampleWriter& writer, std::span<Watched
   }
 }
 
-/// Why nothing came, on CAN.
-void tell_silence(Context& context, std::span<const Watched> watched) {
+std::uint64_t fd_frames(const Context& context) {
+  auto* can = context.session->can();
+  return can == nullptr ? 0 : can->bus().fd_frames();
+}
+
+/// Why nothing came, on CAN, and of CAN FD frames so many.
+void tell_silence(Context& context, std::span<const Watched> watched, std::uint64_t fd_frames) {
   const bool silent = std::all_of(watched.begin(), watched.end(),
                                   [](const Watched& entry) { return entry.rhythm.count() == 0; });
-  if (silent)
+  if (silent && fd_frames > 0)
+    context.notices.push_back(fmt::format(
+        "no PDO of classical CAN came; CAN FD frames that came and were not read: {}. Is a node set to CAN FD?",
+        fd_frames));
+  else if (silent)
     context.notices.emplace_back(
         "no PDO came: nodes send them when operational (`nmt start`), synchronous ones at SYNC (`sync "
         "start`), others when a value changes or by their event timer");
@@ -249,14 +258,17 @@ Result<Value> run_pdo_watch(Context& context, const Arguments& arguments) {
     return fail(Errc::negative, "none of the PDOs is in use",
                 "`pdo show` lists them; `pdo enable` enables one");
   show::SampleWriter writer(context);
+  const auto fd_before = fd_frames(context);
   const auto ended = listen(context, writer, *watched, *length, mappings);
   if (!traffic::has_summary(ended, context.errors)) return fail(ended.error());
   if (context.session->ethercat() != nullptr)
     tell_ended(context, *watched);
   else
-    tell_silence(context, *watched);
+    tell_silence(context, *watched, fd_frames(context) - fd_before);
   if (!context.keeps_samples) return Value(summary(*watched));
-  return Value(report::Record{{"pdos", summary(*watched)}, {"samples", writer.take_kept()}});
+  return Value(report::Record{{"pdos", summary(*watched)},
+                              {"fd_frames", fd_frames(context) - fd_before},
+                              {"samples", writer.take_kept()}});
 }
 
 constexpr Example kPdoWatchExamples[] = {

@@ -13,6 +13,8 @@ namespace {
 constexpr std::size_t kMostOpen = 64;
 /// What doubles an answer, a hub or a driver, does it at once.
 constexpr Duration kDouble = std::chrono::milliseconds(50);
+/// After so many answers that came once, a server whose answers came twice is one like others.
+constexpr int kCopiesMissed = 3;
 
 }  // namespace
 
@@ -38,9 +40,34 @@ bool OpenRequests::repeats(Answer answer, TimePoint now) {
   return std::exchange(last_, answer) == answer && soon;
 }
 
-/// Where two requests write the same, it is all the same whose confirmation came: the value was written.
 OpenRequests::Fit OpenRequests::settle(AnswerForm came, TimePoint now, bool awaited) {
   const bool again = repeats({came, false}, now);
+  return look_for_copy(settle_confirmation(came, now, awaited, again), again);
+}
+
+/// What nobody waits for and repeats the last answer is a copy of it.
+OpenRequests::Fit OpenRequests::look_for_copy(Fit fit, bool again) {
+  has_copy_ = again && fit != Fit::ours;
+  if (has_copy_) note_copy();
+  return fit;
+}
+
+void OpenRequests::note_copy() { copies_ = kCopiesMissed; }
+
+std::optional<TimePoint> OpenRequests::copy_due(AnswerForm answer, TimePoint now) const {
+  const bool may_come =
+      copies_ > 0 && !has_copy_ && last_ && last_->form == answer && now - last_at_ < kDouble;
+  return may_come ? std::optional(last_at_ + kDouble) : std::nullopt;
+}
+
+void OpenRequests::miss_copy() {
+  --copies_;
+  has_copy_ = true;
+}
+
+/// Where two requests write the same, it is all the same whose confirmation came: the value was written.
+OpenRequests::Fit OpenRequests::settle_confirmation(AnswerForm came, TimePoint now, bool awaited,
+                                                    bool again) {
   const auto has_form = [&](const Request& request) { return request.answer == came; };
   const auto oldest = std::find_if(open_.begin(), open_.end(), has_form);
   if (oldest == open_.end()) return Fit::none;
@@ -58,9 +85,13 @@ OpenRequests::Fit OpenRequests::settle_refusal(const std::function<bool(AnswerFo
                                                TimePoint now, bool awaited) {
   const auto oldest = std::find_if(open_.begin(), open_.end(),
                                    [&](const Request& request) { return is_refused(request.answer); });
-  if (oldest == open_.end()) return Fit::none;
+  if (oldest == open_.end()) {
+    // The request of a refusal that comes twice is no longer open.
+    const bool again = last_ && last_->refuses && is_refused(last_->form) && repeats(*last_, now);
+    return look_for_copy(Fit::none, again);
+  }
   const bool again = repeats({oldest->answer, true}, now);
-  return take(oldest, now, again && !(awaited && oldest->transfer == transfer_));
+  return look_for_copy(take(oldest, now, again && !(awaited && oldest->transfer == transfer_)), again);
 }
 
 OpenRequests::Fit OpenRequests::take(std::vector<Request>::iterator answered, TimePoint now, bool is_double) {

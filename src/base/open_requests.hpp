@@ -43,6 +43,13 @@ class OpenRequests {
   Fit settle(AnswerForm came, TimePoint now, bool awaited = true);
   /// A refusal came, for a request whose form `is_refused` accepts.
   Fit settle_refusal(const std::function<bool(AnswerForm)>& is_refused, TimePoint now, bool awaited = true);
+  /// Until when a second copy of the last answer may come that would be taken for that to a request of this
+  /// form: of a server whose answers come twice. Empty where a request can go out at once.
+  std::optional<TimePoint> copy_due(AnswerForm answer, TimePoint now) const;
+  /// A copy came of an answer that the caller tells apart itself.
+  void note_copy();
+  /// The time of copy_due() is over, and none came.
+  void miss_copy();
   /// Whether an answer of this form can be for the present transfer alone.
   bool is_clear(AnswerForm answer) const;
   /// Whether a request of this form is open.
@@ -72,12 +79,16 @@ class OpenRequests {
 
   void add(Request request);
   bool repeats(Answer answer, TimePoint now);
+  Fit settle_confirmation(AnswerForm came, TimePoint now, bool awaited, bool again);
+  Fit look_for_copy(Fit fit, bool again);
   Fit take(std::vector<Request>::iterator answered, TimePoint now, bool is_double);
 
   std::vector<Request> open_;  ///< Oldest first.
   std::uint64_t transfer_ = 1;
   std::optional<Answer> last_;  ///< That came.
   TimePoint last_at_{};
+  bool has_copy_ = false;  ///< The last answer came a second time.
+  int copies_ = 0;         ///< Above 0: answers come twice. Each copy that does not come takes one away.
   std::optional<Duration> lateness_;
 };
 

@@ -193,7 +193,7 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
 }
 
 std::vector<std::string> SocketCanBus::take_notices() {
-  const auto count = std::exchange(fd_frames_, 0);
+  const auto count = fd_frames_ - std::exchange(told_fd_, fd_frames_);
   if (count == 0) return {};
   return {count == 1 ? fmt::format("{}: 1 CAN FD frame came; servoctl reads frames of classical CAN only",
                                    interface_name_)

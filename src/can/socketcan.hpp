@@ -67,6 +67,7 @@ class SocketCanBus final : public Bus {
   int poll_fd() const override { return socket_.get(); }
   /// How many CAN FD frames came: receive() does not give them, CANopen has none.
   std::vector<std::string> take_notices() override;
+  std::uint64_t fd_frames() const override { return fd_frames_; }
   TimePoint next_event() const override { return inbox_.empty() ? kNever : TimePoint::min(); }
 
  private:
@@ -83,7 +84,8 @@ class SocketCanBus final : public Bus {
   Descriptor socket_;
   std::string interface_name_;
   Duration send_limit_;
-  std::size_t fd_frames_ = 0;      ///< Not told yet.
+  std::uint64_t fd_frames_ = 0;    ///< Since it was opened.
+  std::uint64_t told_fd_ = 0;      ///< Of them the notices have said so many.
   std::uint32_t lost_frames_ = 0;  ///< As last told by the kernel.
   bool waits_in_slices_ = false;   ///< recv() of the socket ends after a slice.
   bool is_bus_off_ = false;        ///< As last reported, until it takes part again.

@@ -23,7 +23,22 @@ void SdoClient::start_upload(ObjectAddress object, TimePoint now, Transfer trans
   size_ = size;
   transfer_ = transfer;
   foreign_request_ = false;
-  if (!core_.is_clear(object)) return check(now);
+  kind_ = SdoAnswerKind::read;
+  begin(now);
+}
+
+/// Where a node's answers come twice, the second one comes before the next request.
+void SdoClient::begin(TimePoint now) {
+  const auto due = core_.copy_due(kind_, object_, now);
+  if (!due) return begin_wanted(now);
+  boot_up_ = false;
+  state_ = State::copy;
+  core_.wait_until(*due);
+}
+
+void SdoClient::begin_wanted(TimePoint now) {
+  if (kind_ == SdoAnswerKind::write) return begin_wanted_download(now);
+  if (!core_.is_clear(object_)) return check(now);
   begin_wanted_upload(now);
 }
 
@@ -48,10 +63,15 @@ void SdoClient::start_download(ObjectAddress object, Bytes data, TimePoint now, 
   foreign_request_ = false;
   data_ = std::move(data);
   announced_ = data_.size();
-  const bool by_size = transfer == Transfer::automatic || transfer == Transfer::domain;
-  if (transfer == Transfer::block || (by_size && data_.size() > kBlockWorthwhile))
+  kind_ = SdoAnswerKind::write;
+  begin(now);
+}
+
+void SdoClient::begin_wanted_download(TimePoint now) {
+  const bool by_size = transfer_ == Transfer::automatic || transfer_ == Transfer::domain;
+  if (transfer_ == Transfer::block || (by_size && data_.size() > kBlockWorthwhile))
     return begin_block_download(now);
-  begin_download(transfer == Transfer::expedited || (by_size && !data_.empty() && data_.size() <= 4), now);
+  begin_download(transfer_ == Transfer::expedited || (by_size && !data_.empty() && data_.size() <= 4), now);
 }
 
 void SdoClient::begin_download(bool expedited, TimePoint now) {
@@ -80,10 +100,15 @@ void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
             fmt::format("its answer has {} bytes instead of 8", frame.size));
     return;
   }
+  const bool again = std::exchange(last_answer_, frame) == frame;
+  // Toggle bits alternate: what is equal is one answer that came twice.
+  if (again && (state_ == State::upload_segment || state_ == State::download_segment))
+    return core_.open().note_copy();
   if (!is_anonymous() && !is_first_answer(frame, now)) return;
   if (frame.data[0] == kSdoAbortCommand) return on_abort(frame, now);
   switch (state_) {
     case State::idle:
+    case State::copy:
     case State::resync: break;
     case State::upload_initiate: return on_upload_initiate(frame, now);
     case State::upload_segment: return on_upload_segment(frame, now);

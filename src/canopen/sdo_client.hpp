@@ -74,6 +74,7 @@ class SdoClient {
  private:
   enum class State : std::uint8_t {
     idle,
+    copy,    ///< The answer before may come a second time, and would be taken for that to this request.
     resync,  ///< What was asked before may still be answered: another object is read first.
     upload_initiate,
     upload_segment,
@@ -88,12 +89,15 @@ class SdoClient {
   };
 
   bool is_first_answer(const can::Frame& frame, TimePoint now);
+  void begin(TimePoint now);
+  void begin_wanted(TimePoint now);
   void check(TimePoint now);
   void on_check(TimePoint now);
   void end_in_doubt();
   void on_silence();
   void on_abort(const can::Frame& frame, TimePoint now);
   void begin_wanted_upload(TimePoint now);
+  void begin_wanted_download(TimePoint now);
   void begin_upload(TimePoint now);
   void begin_download(bool expedited, TimePoint now);
 
@@ -126,6 +130,7 @@ class SdoClient {
   SdoCore core_;
   State state_ = State::idle;
   ObjectAddress object_;
+  SdoAnswerKind kind_ = SdoAnswerKind::read;  ///< What is done with it.
   Bytes data_;
   std::size_t offset_ = 0;
   std::optional<std::size_t> announced_;  ///< Size of the whole transfer.
@@ -142,6 +147,7 @@ class SdoClient {
   bool crc_ = false;                        ///< Both sides make one.
   bool nudged_ = false;                     ///< The present block was acknowledged before its end.
   std::optional<can::Frame> acknowledged_;  ///< The acknowledge received last.
+  std::optional<can::Frame> last_answer_;   ///< Of whatever transfer.
   std::optional<can::Frame> tx_;
   std::optional<can::Frame> following_;  ///< To be sent behind `tx_`.
 };

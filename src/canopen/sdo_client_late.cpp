@@ -20,6 +20,7 @@ constexpr Duration kAnswerAfterBootUp = std::chrono::milliseconds(100);
 bool SdoClient::is_anonymous() const {
   switch (state_) {
     case State::idle:
+    case State::copy:
     case State::resync:
     case State::upload_initiate:
     case State::download_initiate:
@@ -33,8 +34,10 @@ bool SdoClient::is_anonymous() const {
 bool SdoClient::is_first_answer(const can::Frame& frame, TimePoint now) {
   const auto named = sdo_object(frame);
   const auto kind = sdo_answer_kind(frame.data[0]);
-  const auto fit = core_.settle(frame.data[0], named, now, state_ != State::idle);
-  if (state_ == State::idle) return false;
+  const bool awaits = state_ != State::idle && state_ != State::copy;
+  const auto fit = core_.settle(frame.data[0], named, now, awaits);
+  if (state_ == State::copy && !core_.copy_due(kind_, object_, now)) begin_wanted(now);
+  if (!awaits) return false;
   if (state_ == State::resync) {
     if (named == check_ && fit != SdoCore::Fit::none) on_check(now);
     return false;
@@ -77,6 +80,10 @@ void SdoClient::end_in_doubt() {
 void SdoClient::on_time(TimePoint now) {
   if (state_ == State::idle || !core_.is_due(now)) return;
   if (boot_up_) return end_by_boot_up();
+  if (state_ == State::copy) {
+    core_.open().miss_copy();
+    return begin_wanted(now);
+  }
   // The last segment of a block has just been handed over: the other side's time begins now.
   if (core_.deadline() == TimePoint::min()) return core_.wait(now);
   // The end of a block was lost: an early acknowledge asks for it again.

@@ -51,6 +51,10 @@ void SdoCore::ask_write(ObjectAddress object, ByteSpan data, TimePoint now) {
   open().ask(form(SdoAnswerKind::write, object), value_of(data), now);
 }
 
+std::optional<TimePoint> SdoCore::copy_due(SdoAnswerKind kind, ObjectAddress object, TimePoint now) const {
+  return open().copy_due(form(kind, object), now);
+}
+
 void SdoCore::overhear(std::uint8_t command, ObjectAddress object, ByteSpan data, TimePoint now) {
   const auto kind = sdo_request_kind(command);
   const bool writes = kind == SdoAnswerKind::write;

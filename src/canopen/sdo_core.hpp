@@ -32,6 +32,8 @@ class SdoCore : public TransferCore<Result<Bytes>> {
   void begin(bool again);
   void ask_read(ObjectAddress object, TimePoint now);
   void ask_write(ObjectAddress object, ByteSpan data, TimePoint now);
+  /// As OpenRequests::copy_due(), before a read of the object, or a write.
+  std::optional<TimePoint> copy_due(SdoAnswerKind kind, ObjectAddress object, TimePoint now) const;
   /// Somebody else asks.
   void overhear(std::uint8_t command, ObjectAddress object, ByteSpan data, TimePoint now);
 

@@ -20,6 +20,7 @@ struct Caution {
   std::string name;                       ///< Parameter or object; empty: it always holds.
   std::optional<std::int64_t> value;      ///< It holds while `name` has this value,
   std::optional<std::int64_t> not_value;  ///< or has any but this one.
+  std::vector<std::string> others;        ///< And only while that is true of all of these as well.
   std::optional<std::int64_t> set;        ///< The value of `name` that ends it.
   std::string text;                       ///< Beside what is made of the keys below.
   std::string text_zh;

@@ -38,6 +38,7 @@ Result<void> read_caution(const TableReader& reader, Caution& out) {
   return reader.read({{"name", into(out.name)},
                       {"value", into(out.value)},
                       {"not", into(out.not_value)},
+                      {"others", into(out.others)},
                       {"set", into(out.set)},
                       {"text", into(out.text)},
                       {"text_zh", into(out.text_zh)},

@@ -30,6 +30,7 @@ void Client::on_bytes(std::string_view bytes, TimePoint now) {
   if (bytes.empty()) return;
   bytes_ += bytes;
   take_lines(bare_ ? "\n" : "\r\n");
+  forget_surplus();
   if (busy() && begins_the_answer())
     deadline_ = std::min(now + patience_, begun_ + kMostPatience * patience_);
   line_end_ = busy() && bytes_.ends_with('\n') ? now + kQuiet : kNever;
@@ -40,6 +41,13 @@ void Client::on_bytes(std::string_view bytes, TimePoint now) {
 bool Client::begins_the_answer() const {
   const auto number = fmt::format("[{}]", sequence_);
   return std::string_view(bytes_).substr(0, number.size()) == number;
+}
+
+/// A line without an end that is not the answer takes no room. Its last byte may be the CR before its LF.
+void Client::forget_surplus() {
+  if (bytes_.size() <= kLongestOther + 1 || begins_the_answer()) return;
+  bytes_.erase(kLongestOther, bytes_.size() - kLongestOther - 1);
+  looked_ = kLongestOther;
 }
 
 void Client::take_lines(std::string_view end) {

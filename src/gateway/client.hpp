@@ -21,8 +21,10 @@ namespace servoctl::gateway {
 class Client {
  public:
   static constexpr Duration kQuiet = std::chrono::milliseconds(200);
-  /// More without an end of line is no gateway.
-  static constexpr std::size_t kLongestAnswer = 64U << 20U;
+  /// More without an end of line is no gateway. An object of 5 MB has room, as hexadecimal bytes.
+  static constexpr std::size_t kLongestAnswer = 16U << 20U;
+  /// Of a line that is not the answer so much is kept until its end comes.
+  static constexpr std::size_t kLongestOther = 65536;
 
   struct Outcome {
     bool silent = false;  ///< Nothing of the answer came for as long as it was waited for.
@@ -40,6 +42,8 @@ class Client {
   std::optional<Outcome> take_outcome() { return std::exchange(outcome_, std::nullopt); }
   /// What came can be no answers.
   bool is_broken() const { return bytes_.size() > kLongestAnswer; }
+  /// So many bytes wait for the end of their line.
+  std::size_t kept() const { return bytes_.size(); }
   /// Nobody waits for the answer any more.
   void abandon() {
     deadline_ = line_end_ = kNever;
@@ -50,6 +54,7 @@ class Client {
 
  private:
   bool begins_the_answer() const;
+  void forget_surplus();
   void take_lines(std::string_view end);
   void on_line(std::string_view line);
 

@@ -14,6 +14,8 @@ namespace {
 
 std::string condition_text(const HeldCaution& held) {
   const auto& rule = *held.rule;
+  if (rule.not_value && !rule.others.empty())
+    return fmt::format("none of {}, {} is {}", rule.name, fmt::join(rule.others, ", "), *rule.not_value);
   if (rule.value) return fmt::format("{} = {}", rule.name, *rule.value);
   if (rule.not_value) return fmt::format("{} is not {}", rule.name, *rule.not_value);
   return "the family's data say so";
@@ -25,6 +27,9 @@ std::string remedy(const HeldCaution& held, const MotionUnits& units) {
   const auto ending = show::ending_setting(rule);
   if (ending.empty()) return "use another method or motion";
   const bool restart = show::needs_restart(units.profile(), rule);
+  if (!rule.others.empty())
+    return fmt::format("`{}` and restart the drive; any of these inputs will do",
+                       lasting_setting(units.profile(), units.node(), rule.name, *rule.set));
   if (!held.unread && units.object(rule.name))
     return restart ? fmt::format("`{}` and restart the drive",
                                  lasting_setting(units.profile(), units.node(), rule.name, *rule.set))
@@ -79,29 +84,62 @@ Result<MayHold> setting_of(session::Session& session, const MotionUnits& units, 
   return out;
 }
 
+namespace {
+
+/// Whether a caution is true of the drive, and whether that is only because a parameter of it is not known.
+class CautionReader {
+ public:
+  CautionReader(session::Session& session, const MotionUnits& units, const PanelValues& panel,
+                const OwedValues& owed)
+      : session_(&session), units_(&units), panel_(&panel), owed_(&owed) {}
+
+  /// Empty where it is not true.
+  Result<std::optional<HeldCaution>> read(const drive::Caution& rule) {
+    HeldCaution out{&rule, false};
+    if (!rule.is_conditional()) return std::optional(out);
+    auto names = rule.others;
+    names.insert(names.begin(), rule.name);
+    for (const auto& name : names) {
+      const auto values = values_of(name);
+      if (!values) return fail(values.error());
+      const bool true_of_one =
+          std::ranges::any_of(**values, [&](const auto& value) { return value && rule.holds(*value); });
+      const bool unknown = std::ranges::any_of(**values, [](const auto& value) { return !value; });
+      if (!true_of_one && !unknown) return std::optional<HeldCaution>();
+      out.unread = out.unread || !true_of_one;
+    }
+    return std::optional(out);
+  }
+
+ private:
+  Result<const MayHold*> values_of(const std::string& name) {
+    if (const auto found = known_.find(name); found != known_.end()) return &found->second;
+    auto read = setting_of(*session_, *units_, name, *owed_);
+    if (!read) return fail(read.error());
+    const auto told = panel_->find(name);
+    if (!read->front() && told != panel_->end()) read->front() = static_cast<double>(told->second);
+    return &(known_[name] = std::move(*read));
+  }
+
+  session::Session* session_;
+  const MotionUnits* units_;
+  const PanelValues* panel_;
+  const OwedValues* owed_;
+  std::map<std::string, MayHold> known_;
+};
+
+}  // namespace
+
 Result<std::vector<HeldCaution>> held_cautions(session::Session& session, const MotionUnits& units,
                                                const PanelValues& panel, const OwedValues& owed,
                                                const std::function<bool(const drive::Caution&)>& concerns) {
   std::vector<HeldCaution> out;
-  std::map<std::string, MayHold> known;
+  CautionReader reader(session, units, panel, owed);
   for (const auto& rule : units.profile().rules.cautions) {
     if (!concerns(rule)) continue;
-    if (!rule.is_conditional()) {
-      out.push_back({&rule, false});
-      continue;
-    }
-    if (known.count(rule.name) == 0) {
-      auto read = setting_of(session, units, rule.name, owed);
-      if (!read) return fail(read.error());
-      const auto told = panel.find(rule.name);
-      if (!read->front() && told != panel.end()) read->front() = static_cast<double>(told->second);
-      known[rule.name] = std::move(*read);
-    }
-    const auto& values = known[rule.name];
-    const bool true_of_one =
-        std::ranges::any_of(values, [&](const auto& value) { return value && rule.holds(*value); });
-    const bool unknown = std::ranges::any_of(values, [](const auto& value) { return !value; });
-    if (true_of_one || unknown) out.push_back({&rule, !true_of_one});
+    const auto held = reader.read(rule);
+    if (!held) return fail(held.error());
+    if (*held) out.push_back(**held);
   }
   return out;
 }

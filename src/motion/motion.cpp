@@ -209,6 +209,7 @@ Result<void> Motion::look_in_op() {
 Result<void> Motion::make_ready(MotionGuard& guard, std::int8_t mode,
                                 const std::vector<MotionSetting>& settings,
                                 std::optional<ObjectAddress> kept_target, session::Rehearsal& rehearsal) {
+  if (const auto done = guard.learn_rpdos(); !done) return done;
   rehearsal.begin_step("memory");
   if (const auto done = guard.spare_flash(); !done) return done;
   rehearsal.begin_step("watchdog");

@@ -25,7 +25,7 @@ MotionGuard::MotionGuard(session::Session& session, const MotionUnits& units, st
       node_(node),
       power_(session, units.profile(), node),
       hold_(session.protect(session::Care::guarded)),
-      foreign_writes_(session, node, [this](ObjectAddress object) { hear_write(object); }) {}
+      foreign_writes_(session, node, [this](auto object, auto way) { hear_write(object, way); }) {}
 
 /// Where even the way out runs out of memory, the drive is still told to stop: nothing of that needs any.
 MotionGuard::~MotionGuard() {
@@ -41,15 +41,16 @@ void MotionGuard::say(std::uint8_t controlword) noexcept {
   session_->network().send_last_word(node_, objects::kControlword, controlword);
 }
 
-void MotionGuard::hear_write(ObjectAddress object) {
+void MotionGuard::hear_write(ObjectAddress object, session::ForeignWrites::Way way) {
   if (end_) return;
-  if (object == objects::kControlword || own_.count(object) > 0) foreign_.insert(object);
+  if (object == objects::kControlword || own_.count(object) > 0) foreign_.emplace(object, way);
 }
 
-std::optional<ObjectAddress> MotionGuard::foreign_command() const {
+std::optional<MotionGuard::ForeignCommand> MotionGuard::foreign_command() const {
   for (const auto object : {objects::kControlword, objects::kModeOfOperation, objects::kTargetVelocity,
                             objects::kTargetPosition, objects::kTargetTorque})
-    if (foreign_.count(object) > 0) return object;
+    if (const auto found = foreign_.find(object); found != foreign_.end())
+      return ForeignCommand{object, found->second};
   return std::nullopt;
 }
 

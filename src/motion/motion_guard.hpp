@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -35,6 +36,11 @@ class MotionGuard {
   MotionGuard& operator=(const MotionGuard&) = delete;
   ~MotionGuard();
 
+  /// Reads by which PDOs another master could write what decides about the motion: foreign_command() knows
+  /// them then, as it knows SDOs.
+  Result<void> learn_rpdos() {
+    return rehearsal_ != nullptr ? Result<void>() : foreign_writes_.learn_rpdos(units_->profile());
+  }
   /// From now on nothing is sent: what would be goes there, which outlives this. To be called first.
   void rehearse(session::Rehearsal& rehearsal) { rehearsal_ = &rehearsal; }
   /// As Power::set_other_source().
@@ -63,7 +69,12 @@ class MotionGuard {
   Result<void> enable();
 
   /// Of what decides about the motion (6040h, 6060h and the targets), what another master has written since.
-  std::optional<ObjectAddress> foreign_command() const;
+  struct ForeignCommand {
+    ObjectAddress object;
+    session::ForeignWrites::Way way;
+    bool by_pdo() const { return way == session::ForeignWrites::Way::rpdo; }
+  };
+  std::optional<ForeignCommand> foreign_command() const;
 
   /// The speed below which the motor counts as standing still, in the unit of 606Ch.
   void set_standstill(double speed) { standstill_ = speed; }
@@ -91,7 +102,7 @@ class MotionGuard {
   void put_back();
   void put_back(const Changed& changed);
   void keep_mode();
-  void hear_write(ObjectAddress object);
+  void hear_write(ObjectAddress object, session::ForeignWrites::Way way);
   Result<void> send_life_sign(const session::LifeSign& sign);
   /// Sends a controlword without waiting for anything and without memory.
   void say(std::uint8_t controlword) noexcept;
@@ -121,8 +132,9 @@ class MotionGuard {
   std::optional<double> standstill_;
   std::optional<MotionEnd> end_;
   MotionEnd result_;
-  std::set<ObjectAddress> own_;      ///< What it has set, or found as it was to be set.
-  std::set<ObjectAddress> foreign_;  ///< Of those, what another master wrote since.
+  std::set<ObjectAddress> own_;  ///< What it has set, or found as it was to be set.
+  /// Of those, what another master wrote since, and how.
+  std::map<ObjectAddress, session::ForeignWrites::Way> foreign_;
   session::ForeignWrites foreign_writes_;
   session::Rehearsal* rehearsal_ = nullptr;
 };

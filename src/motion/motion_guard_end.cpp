@@ -167,11 +167,17 @@ void MotionGuard::put_back(const Changed& changed) {
 }
 
 void MotionGuard::tell_foreign_writes() {
-  for (const auto object : foreign_)
-    result_.left.push_back(fmt::format(
-        "another master wrote object {} meanwhile: its old value may be lost, and its present value may be "
-        "wrong",
-        to_string(object)));
+  for (const auto& [object, way] : foreign_)
+    result_.left.push_back(
+        way == session::ForeignWrites::Way::rpdo
+            ? fmt::format(
+                  "another master sent a PDO with object {} meanwhile: its old value may be lost, and its "
+                  "present value may be wrong",
+                  to_string(object))
+            : fmt::format(
+                  "another master wrote object {} meanwhile: its old value may be lost, and its present "
+                  "value may be wrong",
+                  to_string(object)));
   foreign_.clear();
 }
 

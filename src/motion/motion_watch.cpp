@@ -40,10 +40,14 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
       if (is_over(fits.error())) return false;
       return fail(fits.error());
     }
-    if (const auto object = guard_ ? guard_->foreign_command() : std::nullopt)
-      return fail(error(Errc::negative,
-                        fmt::format("another master wrote object {} while moving", to_string(*object)),
-                        "two masters command the drive: stop the other one"));
+    if (const auto foreign = guard_ ? guard_->foreign_command() : std::nullopt)
+      return fail(
+          error(Errc::negative,
+                foreign->by_pdo()
+                    ? fmt::format("another master sent a PDO with object {} while moving",
+                                  to_string(foreign->object))
+                    : fmt::format("another master wrote object {} while moving", to_string(foreign->object)),
+                "two masters command the drive: stop the other one"));
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));
     const auto enough = done(*sample);

@@ -42,6 +42,8 @@ TransferRun::TransferRun(Session& session, std::span<const SdoRequest> requests)
 }
 
 std::vector<Result<Bytes>> TransferRun::run() {
+  const auto& cancelled = session_->options().cancelled;
+  if (cancelled && cancelled()) return send_nothing();
   const OptionScope grace(*session_, &Options::until, until_ == kNever ? kNever : until_ + kGrace);
   for (auto& channel : channels_) start(channel);
   const std::function<bool()> stirred = [this] {
@@ -62,6 +64,12 @@ std::vector<Result<Bytes>> TransferRun::run() {
     }
     if (*stepped && session_->options().progress) tell_progress();
   }
+}
+
+/// Whoever was interrupted before asks and writes no more.
+std::vector<Result<Bytes>> TransferRun::send_nothing() {
+  for (auto& result : results_) result = fail(Errc::interrupted, "interrupted");
+  return give_back();
 }
 
 /// The channels are ready for the next run.

@@ -39,6 +39,7 @@ class TransferRun {
   void skip_rest(Lane& channel, const Error& reason, bool reads_too);
   void fail_all(const Error& error);
   void tell_progress();
+  std::vector<Result<Bytes>> send_nothing();
   std::vector<Result<Bytes>> give_back();
 
   Session* session_;

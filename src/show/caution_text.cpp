@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::string_view kBothLimits = "both limit switches";
 constexpr std::string_view kOther = "{} other than {}";
+constexpr std::string_view kNoneIs = "None of {}, {} is {}";
 constexpr std::string_view kFactory = " (factory value)";
 constexpr std::string_view kMasked =
     "{}{}: the drive ignores {}. No motion stops there, and servoctl refuses homing methods that need an ignored switch.";
@@ -57,6 +58,9 @@ class CautionWords {
   }
 
   std::string condition() const {
+    if (caution_->not_value && !caution_->others.empty())
+      return fmt::format(fmt::runtime(say(kNoneIs)), caution_->name, fmt::join(caution_->others, ", "),
+                         *caution_->not_value);
     if (caution_->value) return fmt::format("{} = {}", caution_->name, *caution_->value);
     if (caution_->not_value)
       return fmt::format(fmt::runtime(say(kOther)), caution_->name, *caution_->not_value);
@@ -65,7 +69,9 @@ class CautionWords {
 
   std::string factory() const {
     const auto* parameter = profile_->parameter(caution_->name);
-    if (parameter == nullptr || !parameter->default_value || !caution_->is_conditional()) return {};
+    if (!caution_->others.empty() || parameter == nullptr || !parameter->default_value ||
+        !caution_->is_conditional())
+      return {};
     return caution_->holds(od::to_double(*parameter->default_value)) ? say(kFactory) : std::string();
   }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "base/time.hpp"
@@ -150,13 +151,14 @@ class Axis {
   double read(ObjectAddress object) const;
   /// Where the axis stands on its track.
   double place() const { return (position_ - origin_) / units_per_turn(); }
-  /// A caution that masks switches, and where its parameter stands; empty: on the panel only.
+  /// A caution that masks switches, and where its parameters stand; empty: on the panel only.
   struct SwitchRule {
     const drive::Caution* rule = nullptr;
-    std::optional<ObjectAddress> object;
+    std::vector<std::pair<std::string, std::optional<ObjectAddress>>> parameters;
   };
   std::vector<SwitchRule> find_switch_rules() const;
   bool holds(const SwitchRule& rule) const;
+  bool holds(const drive::Caution& rule, const std::string& name, std::optional<ObjectAddress> object) const;
   void look_at_switch_rules();
   ObjectAddress find_encoder() const;
   std::optional<ObjectAddress> find_speed_monitor() const;

@@ -10,23 +10,33 @@ namespace servoctl::sim {
 std::vector<Axis::SwitchRule> Axis::find_switch_rules() const {
   std::vector<SwitchRule> out;
   for (const auto& rule : profile_->rules.cautions)
-    if (!rule.masks.empty()) out.push_back({&rule, drive::place_of(*profile_, rule.name)});
+    if (!rule.masks.empty()) {
+      out.push_back({&rule, {{rule.name, drive::place_of(*profile_, rule.name)}}});
+      for (const auto& name : rule.others)
+        out.back().parameters.emplace_back(name, drive::place_of(*profile_, name));
+    }
   return out;
 }
 
-/// A parameter without an object holds what its panel was told, else what the factory put there.
 bool Axis::holds(const SwitchRule& rule) const {
-  if (!rule.rule->is_conditional()) return true;
-  if (rule.object) {
-    const auto& meaning = meaning_of(*rule.object);
-    const auto value = od::decode(meaning.type, values_->in_force(*rule.object));
-    return value && rule.rule->holds(od::decode_number(meaning.encoding, *value));
+  return !rule.rule->is_conditional() || std::ranges::all_of(rule.parameters, [&](const auto& parameter) {
+    return holds(*rule.rule, parameter.first, parameter.second);
+  });
+}
+
+/// A parameter without an object holds what its panel was told, else what the factory put there.
+bool Axis::holds(const drive::Caution& rule, const std::string& name,
+                 std::optional<ObjectAddress> object) const {
+  if (object) {
+    const auto& meaning = meaning_of(*object);
+    const auto value = od::decode(meaning.type, values_->in_force(*object));
+    return value && rule.holds(od::decode_number(meaning.encoding, *value));
   }
-  if (const auto told = panel_.find(rule.rule->name); told != panel_.end())
-    return rule.rule->holds(static_cast<double>(told->second));
-  const auto* parameter = profile_->parameter(rule.rule->name);
+  if (const auto told = panel_.find(name); told != panel_.end())
+    return rule.holds(static_cast<double>(told->second));
+  const auto* parameter = profile_->parameter(name);
   return parameter != nullptr && parameter->default_value &&
-         rule.rule->holds(od::to_double(*parameter->default_value));
+         rule.holds(od::to_double(*parameter->default_value));
 }
 
 void Axis::look_at_switch_rules() {

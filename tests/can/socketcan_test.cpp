@@ -124,6 +124,7 @@ TEST_F(SocketCan, CountsCanFdFramesAndGivesTheOthers) {
       bus_->take_notices(),
       std::vector<std::string>{"can0: 2 CAN FD frames came; servoctl reads frames of classical CAN only"});
   EXPECT_TRUE(bus_->take_notices().empty());
+  EXPECT_EQ(bus_->fd_frames(), 2U) << "since it was opened";
 }
 
 TEST_F(SocketCan, ReceivesReportsOfTheControllerAsErrors) {

@@ -31,6 +31,8 @@ class TouchedBus final : public can::Bus {
  public:
   explicit TouchedBus(sim::SimBus& bus) : bus_(&bus) {}
   std::function<void(can::Frame&)> on_receive;  ///< May be empty.
+  std::function<std::uint64_t()> came_of_fd;    ///< May be empty.
+  std::uint64_t fd_frames() const override { return came_of_fd ? came_of_fd() : 0; }
 
   TimePoint now() const override { return bus_->now(); }
   TimePoint next_event() const override { return bus_->next_event(); }

@@ -117,6 +117,17 @@ TEST_F(GatewayClientTest, ALineFeedAloneEndsALineWhereNothingFollows) {
   EXPECT_EQ(outcome(), "OK") << "from then on at once";
 }
 
+TEST_F(GatewayClientTest, AnAnswerThatComesTwiceIsNotThatOfTheNextRequest) {
+  start();
+  client.on_bytes("[1] 5\r\n", now);
+  EXPECT_EQ(outcome(), "5");
+  start();
+  client.on_bytes("[1] 5\r\n", now);
+  EXPECT_EQ(outcome(), "-");
+  client.on_bytes("[2] 6\r\n[2] 6\r\n", now);
+  EXPECT_EQ(outcome(), "6");
+}
+
 TEST_F(GatewayClientTest, WhoIsLeftIsNotWaitedFor) {
   start();
   client.abandon();
@@ -129,8 +140,20 @@ TEST_F(GatewayClientTest, WhoIsLeftIsNotWaitedFor) {
 TEST_F(GatewayClientTest, AFloodWithoutAnEndIsNoGateway) {
   start();
   const std::string much(1U << 20U, 'x');
-  for (int i = 0; i <= 64; ++i) client.on_bytes(much, now);
+  client.on_bytes("[1] ", now);
+  for (int i = 0; i <= 16; ++i) client.on_bytes(much, now);
   EXPECT_TRUE(client.is_broken());
+}
+
+TEST_F(GatewayClientTest, AFloodThatIsNoAnswerTakesNoRoomAndHidesNone) {
+  start();
+  const std::string much(1U << 20U, 'x');
+  for (int i = 0; i < 100; ++i) client.on_bytes(much, now);
+  EXPECT_FALSE(client.is_broken());
+  EXPECT_LE(client.kept(), Client::kLongestOther + 1);
+  client.on_bytes(much + '\r', now);
+  client.on_bytes("\n[1] 6AM=\r\n", now);
+  EXPECT_EQ(outcome(), "6AM=");
 }
 
 }  // namespace

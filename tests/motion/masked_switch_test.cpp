@@ -54,6 +54,35 @@ TEST(MaskedSwitch, OneForcedLimitInputRefusesItsOwnMethodsAlone) {
     EXPECT_TRUE(planned(bench, method)) << method;
 }
 
+/// Sets the function of a terminal: Pn0610 is that of DI0 in position mode, at 2003h:0Bh.
+void assign(MotionBench& bench, std::uint8_t sub, unsigned function) {
+  ASSERT_TRUE(bench.session->download(1, {0x2003, sub}, store_le(function, 2)));
+}
+
+TEST(MaskedSwitch, HomingToASwitchThatNoInputHasIsRefused) {
+  MotionBench bench("gsd600", 131072);
+  set_mask(bench, 0);
+  for (const auto* method : {"3", "17", "18", "19"}) EXPECT_TRUE(planned(bench, method)) << method;
+  assign(bench, 0x0F, 5);
+  for (const auto* method : {"3", "19", "7", "23"})
+    expect_refused(bench, method,
+                   "needs the home switch, which the drive ignores: none of Pn0614, Pn0610, Pn0611, Pn0612, "
+                   "Pn0613 is 41",
+                   "`param set Pn0614=41 -n 1 --keep` and restart the drive; any of these inputs will do");
+  for (const auto* method : {"17", "18"}) EXPECT_TRUE(planned(bench, method)) << method;
+  assign(bench, 0x0B, 41);
+  for (const auto* method : {"3", "19"})
+    EXPECT_TRUE(planned(bench, method)) << method << ": another input has it";
+  assign(bench, 0x0D, 0);
+  expect_refused(bench, "18", "positive limit switch, which the drive ignores: none of Pn0612, ", "Pn0612=3");
+  EXPECT_TRUE(planned(bench, "17"));
+  assign(bench, 0x0E, 3);
+  EXPECT_TRUE(planned(bench, "18")) << "another input has it";
+  expect_refused(bench, "17", "negative limit switch, which the drive ignores: none of Pn0613, ", "Pn0613=4");
+  assign(bench, 0x23, 4);
+  EXPECT_TRUE(planned(bench, "17")) << "which set of functions counts is not stated";
+}
+
 TEST(MaskedSwitch, APanelParameterThatNobodyHasReadMayMaskIt) {
   MotionBench bench("sv2");
   for (const auto* method : {"17", "18", "23", "27"})

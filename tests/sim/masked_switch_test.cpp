@@ -40,6 +40,21 @@ TEST_F(MaskedSwitch, StaysMaskedUntilTheDriveRestarts) {
   EXPECT_NE(status() & kAttained, 0U);
 }
 
+TEST_F(MaskedSwitch, IsNotFoundWhereNoInputHasItsFunction) {
+  boot("gsd600");
+  write({0x2003, 4}, "0");
+  write({0x2003, 0x0E}, "0");
+  restart();
+  home("17");
+  wait(20s);
+  EXPECT_EQ(status() & kAttained, 0U) << "Pn0613 was LSN";
+  write({0x2003, 0x0B}, "4");
+  restart();
+  home("17");
+  wait(20s);
+  EXPECT_NE(status() & kAttained, 0U) << "DI0 is LSN";
+}
+
 TEST_F(MaskedSwitch, ThatIsObeyedStopsAMotion) {
   boot("gsd600");
   write({0x2003, 4}, "0");

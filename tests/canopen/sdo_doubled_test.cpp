@@ -1,0 +1,107 @@
+// A server whose answers all come twice, the second one up to 50 ms later: nothing of that is an error, and
+// no value is an older one.
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <utility>
+
+#include "canopen/sdo_client.hpp"
+#include "one_object.hpp"
+
+namespace servoctl::canopen {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr ObjectAddress kObject{0x2000, 1};
+constexpr ObjectAddress kOther{0x1018, 1};
+
+/// The delay of the second copy. What a node says comes in its order: the next answer waits for it.
+class SdoDoubled : public testing::TestWithParam<Duration> {
+ protected:
+  Result<Bytes> run() {
+    for (;;) {
+      while (const auto sent = client.take_frame()) {
+        server.on_frame(*sent, now);
+        while (const auto answer = server.take_frame()) put(*answer);
+      }
+      if (auto end = client.take_result()) return *end;
+      const auto due = coming.empty() ? kNever : coming.front().first;
+      now = std::max(now, std::min(due, client.deadline()));
+      if (due <= now) {
+        client.on_frame(coming.front().second, now);
+        coming.pop_front();
+      }
+      client.on_time(now);
+    }
+  }
+  void put(const can::Frame& answer) {
+    auto time = now + 1ms;
+    if (!coming.empty()) time = std::max(time, coming.back().first);
+    coming.emplace_back(time, answer);
+    coming.emplace_back(time + GetParam(), answer);
+  }
+  Result<Bytes> read(Transfer transfer = Transfer::automatic, ObjectAddress object = kObject) {
+    client.start_upload(object, now, transfer);
+    return run();
+  }
+  Result<Bytes> write(const Bytes& data, Transfer transfer = Transfer::automatic) {
+    client.start_download(kObject, data, now, transfer);
+    return run();
+  }
+  /// As every program begins: the node is asked who it is.
+  void identify() {
+    store.value = {0x92, 0x01, 0x02, 0x00};
+    ASSERT_TRUE(read(Transfer::automatic, {0x1000, 0}));
+    ASSERT_TRUE(read(Transfer::automatic, kOther));
+  }
+  /// Values of one size that differ, read and written in turn, as often as a toggle bit has states and more.
+  void expect_all_right(std::size_t size, Transfer transfer) {
+    identify();
+    for (std::uint8_t round = 0; round < 5; ++round) {
+      SCOPED_TRACE(static_cast<int>(round));
+      auto value = counted(size);
+      for (auto& byte : value) byte = static_cast<std::uint8_t>(byte + 16 * round + 1);
+      const auto written = write(value, transfer);
+      ASSERT_TRUE(written) << written.error().message;
+      EXPECT_EQ(store.value, value);
+      const auto back = read(transfer);
+      ASSERT_TRUE(back) << back.error().message;
+      EXPECT_EQ(*back, value);
+      // Changed by the drive itself.
+      for (auto& byte : value) ++byte;
+      store.value = value;
+      const auto again = read(transfer);
+      ASSERT_TRUE(again) << again.error().message;
+      EXPECT_EQ(*again, value) << "not an older one";
+    }
+  }
+
+  OneObject store;
+  SdoServer server{2, store, {}};
+  SdoClient client{2, 500ms};
+  TimePoint now{1s};
+  std::deque<std::pair<TimePoint, can::Frame>> coming;
+};
+
+TEST_P(SdoDoubled, ExpeditedTransfersAreRight) { expect_all_right(4, Transfer::automatic); }
+TEST_P(SdoDoubled, SegmentedTransfersAreRight) { expect_all_right(60, Transfer::segmented); }
+TEST_P(SdoDoubled, BlockTransfersAreRight) { expect_all_right(2000, Transfer::block); }
+
+TEST_P(SdoDoubled, ARefusalIsNotHiddenByTheConfirmationBeforeIt) {
+  identify();
+  ASSERT_TRUE(write({1, 2}));
+  store.refusal = 0x0609'0030;
+  const auto refused = write({3, 4});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().abort_code, 0x0609'0030U);
+  store.refusal = 0;
+  EXPECT_TRUE(write({5, 6}));
+  EXPECT_EQ(store.value, (Bytes{5, 6}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Delays, SdoDoubled, testing::Values(Duration(0ms), Duration(3ms), Duration(20ms)),
+                         [](const auto& one) { return "After" + std::to_string(one.param / 1ms) + "ms"; });
+
+}  // namespace
+}  // namespace servoctl::canopen

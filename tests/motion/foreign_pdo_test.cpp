@@ -1,0 +1,89 @@
+// PDOs of another master that reach the drive in a motion.
+#include "motion_support.hpp"
+
+namespace servoctl::motion {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct Case {
+  const char* family;
+  double turn;
+};
+
+class ForeignPdo : public testing::TestWithParam<Case> {
+ protected:
+  MotionBench bench{GetParam().family, GetParam().turn};
+
+  void write(std::uint16_t index, std::uint8_t sub, std::uint64_t value, std::size_t size) {
+    const auto done = bench.session->download(1, {index, sub}, store_le(value, size));
+    ASSERT_TRUE(done) << done.error().message;
+  }
+  /// RPDO1 holds this object alone; its CAN-ID is 201h.
+  void map(std::uint16_t index, unsigned bits) {
+    write(0x1400, 1, 0x8000'0201, 4);
+    write(0x1600, 0, 0, 1);
+    write(0x1600, 1, std::uint64_t{index} << 16U | bits, 4);
+    write(0x1600, 0, 1, 1);
+    write(0x1400, 1, 0x201, 4);
+  }
+  void order(canopen::NmtCommand command) {
+    ASSERT_TRUE(bench.session->can()->send(canopen::nmt_frame(command, 1)));
+    bench.wait(10ms);
+  }
+  /// The frame arrives when the motion has gone on for some samples.
+  void send_meanwhile(const char* frame) {
+    bench.options.on_sample = [this, frame](const MotionSample&) {
+      if (++samples_ == 3) bench.bus->injected.emplace_back(frame);
+    };
+  }
+  void expect_noticed(const MotionReport& done, std::string_view object) {
+    ASSERT_FALSE(done.outcome);
+    EXPECT_NE(
+        done.outcome.error().message.find("another master sent a PDO with object " + std::string(object)),
+        std::string::npos)
+        << done.outcome.error().message;
+    EXPECT_FALSE(bench.energised());
+  }
+
+ private:
+  int samples_ = 0;
+};
+
+TEST_P(ForeignPdo, ATargetVelocityEndsAJog) {
+  map(0x60FF, 32);
+  order(canopen::NmtCommand::start);
+  send_meanwhile("201#10270000");
+  expect_noticed(bench.jog(jog_for("60rpm", 1s)), "0x60FF:0");
+}
+
+TEST_P(ForeignPdo, ATargetPositionEndsAMove) {
+  map(0x607A, 32);
+  order(canopen::NmtCommand::start);
+  send_meanwhile("201#10270000");
+  expect_noticed(bench.move(move_to("5rev", "60rpm", true)), "0x607A:0");
+}
+
+TEST_P(ForeignPdo, ATargetTorqueEndsATorqueMotion) {
+  if (!bench.profile().dictionary.find({0x6071, 0})) GTEST_SKIP() << "it has no torque mode";
+  bench.options.speed_limit = "200rpm";
+  map(0x6071, 16);
+  order(canopen::NmtCommand::start);
+  send_meanwhile("201#1027");
+  expect_noticed(bench.torque({.torque = "1%", .length = 1s}), "0x6071:0");
+}
+
+TEST_P(ForeignPdo, WhatIsMappedToNothingOfTheMotionEndsNone) {
+  map(0x6081, 32);
+  order(canopen::NmtCommand::start);
+  send_meanwhile("201#10270000");
+  const auto done = bench.jog(jog_for("60rpm", 1s));
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+}
+
+INSTANTIATE_TEST_SUITE_P(Families, ForeignPdo,
+                         testing::Values(Case{"cia402", 10000}, Case{"ts", 10000}, Case{"gsd600", 131072}),
+                         [](const auto& one) { return std::string(one.param.family); });
+
+}  // namespace
+}  // namespace servoctl::motion
