@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <algorithm>
+#include <set>
 #include <system_error>
 
 #include "base/file.hpp"
 #include "base/text.hpp"
+#include "canopen/pdo.hpp"
 #include "command/command.hpp"
 #include "settings/backup_file.hpp"
 #include "settings/comparison.hpp"
@@ -45,12 +47,31 @@ Result<session::SettingFilter> filter_of(const Context& context, std::string_vie
       [chosen = std::move(*selection)](const auto& setting) { return chosen(setting.entry->address); }};
 }
 
+/// A drive takes values of a PDO only while its COB-ID says that it is invalid, and entries of a mapping only
+/// by its count: of a PDO that has changed, command lines need these too. `restore` reads them from the
+/// drive.
+bool is_needed_by_lines(ObjectAddress object, const std::set<std::uint16_t>& changed) {
+  const auto place = canopen::pdo_at(object.index);
+  if (!place) return false;
+  const canopen::Pdo pdo{place->direction, place->number};
+  return (place->mapping && changed.contains(object.index)) ||
+         (!place->mapping && object.sub == 1 &&
+          (changed.contains(pdo.communication_index()) || changed.contains(pdo.mapping_index())));
+}
+
 /// Takes away what is as the factory left it. A value whose default no manual states stays.
-void keep_changed(const drive::Profile& profile, settings::Backup& backup) {
+void keep_changed(const drive::Profile& profile, settings::Backup& backup, settings::BackupFormat format) {
   const auto factory = settings::factory_side(profile, backup.identity.node);
-  std::erase_if(backup.entries, [&](const settings::Backup::Entry& entry) {
+  const auto is_unchanged = [&](const settings::Backup::Entry& entry) {
     const auto found = factory.values.find(entry.object);
     return !entry.bytes || (found != factory.values.end() && found->second == *entry.bytes);
+  };
+  std::set<std::uint16_t> changed;
+  if (format == settings::BackupFormat::batch)
+    for (const auto& entry : backup.entries)
+      if (!is_unchanged(entry)) changed.insert(entry.object.index);
+  std::erase_if(backup.entries, [&](const settings::Backup::Entry& entry) {
+    return is_unchanged(entry) && (!entry.bytes || !is_needed_by_lines(entry.object, changed));
   });
 }
 
@@ -93,7 +114,7 @@ void tell_lines(Context& context, const std::filesystem::path& file, std::uint8_
 
 Result<Saved> save(Context& context, settings::Backup backup, bool changed, settings::BackupFormat format,
                    const std::filesystem::path& file) {
-  if (changed) keep_changed(*context.profile, backup);
+  if (changed) keep_changed(*context.profile, backup, format);
   settings::tell_left_out(context, backup);
   Saved out;
   for (const auto& entry : backup.entries) ++(entry.bytes ? out.values : out.left_out);

@@ -78,6 +78,7 @@ class Difference {
     if (comparison.different > 0)
       context_->errors.push_back(settings::differences_error(comparison, sides_[0], sides_[1]));
     if (!batch) return Value(std::move(comparison.record));
+    if (const auto added = add_cob_ids(); !added) return fail(added.error());
     report::List lines;
     for (auto& line : settings::lines_between(profile_, sides_[0], sides_[1], whole))
       lines.emplace_back(std::move(line));
@@ -180,6 +181,20 @@ class Difference {
     for (const auto& entry : *read)
       if (entry.bytes) out.values.emplace(entry.object, *entry.bytes);
     return out;
+  }
+
+  /// The lines make PDOs invalid for a while, and valid again: what their COB-IDs are, a file may not say.
+  Result<void> add_cob_ids() {
+    const auto lacking = operands_[0].node != 0 ? settings::cob_ids_lacking(*profile_, sides_[0])
+                                                : std::vector<ObjectAddress>();
+    if (lacking.empty()) return {};
+    const auto session = context_->front_end->open_bus();
+    if (!session) return fail(session.error());
+    const auto read = session::read_objects(**session, operands_[0].node, lacking);
+    if (!read) return fail(read.error());
+    for (const auto& entry : *read)
+      if (entry.bytes) sides_[0].values.emplace(entry.object, *entry.bytes);
+    return {};
   }
 
   Context* context_;

@@ -86,6 +86,7 @@ Result<report::Value> run_gateway(Context& context, const Arguments& arguments) 
   if (const auto sure = confirm_open(context, *address, writes); !sure) return fail(sure.error());
   const auto listener = gateway::Listener::open(*address);
   if (!listener) return fail(listener.error());
+  context.front_end->wait_for_no_reader();
   context.emit(told, fmt::format("gateway of {} at {}, {}; Ctrl-C ends it", context.session->url(),
                                  address->text(), writes ? "clients may write" : "read only"));
   if (const auto served = serve(context, **listener, writes); !served) return fail(served.error());

@@ -55,9 +55,9 @@ void add_state(Record& out, const session::Identity& node, session::Session& ses
   out.push_back({"nmt", node.state ? Value(session::name(*node.state)) : Value()});
 }
 
-Value identity_record(const session::Identity& node, std::span<const drive::Family> families,
-                      std::span<const Result<Bytes>> more, const drive::Profile* profile,
-                      const Context& context) {
+Record identity_record(const session::Identity& node, std::span<const drive::Family> families,
+                       std::span<const Result<Bytes>> more, const drive::Profile* profile,
+                       const Context& context) {
   const auto guesses = session::guess_families(node, families);
   Record out{
       {"node", node.node},
@@ -113,7 +113,7 @@ Result<report::Value> info_of_registers(Context& context, bool restarted) {
       context.errors.push_back(told.error());
       continue;
     }
-    (void)note_owed(context, node, restarted);
+    if (auto* record = std::get_if<Record>(&told->data())) add_owed(context, node, restarted, *record);
     out.push_back(std::move(*told));
   }
   return report::Value(std::move(out));
@@ -147,9 +147,10 @@ Result<report::Value> run_info(Context& context, const Arguments& arguments) {
                              ? Result<void>{}
                              : context.hold_family(std::span(&node, 1), context.profile, false);
       if (!right) context.errors.push_back(right.error());
-      out.push_back(identity_record((*found)[at], families, std::span(answers).subspan(3 * at, 3),
-                                    right ? context.profile : nullptr, context));
-      (void)note_owed(context, node, *restarted);
+      auto record = identity_record((*found)[at], families, std::span(answers).subspan(3 * at, 3),
+                                    right ? context.profile : nullptr, context);
+      add_owed(context, node, *restarted, record);
+      out.push_back(std::move(record));
       ++at;
       continue;
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "command/command.hpp"
+#include "command/nmt_result.hpp"
 #include "session/can_network.hpp"
 #include "session/gateway_network.hpp"
 #include "session/identify.hpp"
@@ -31,58 +32,7 @@ constexpr Parameter kNmtParameters[] = {
      .kind = Kind::flag},
 };
 
-bool is_reset(NmtCommand command) {
-  return command == NmtCommand::reset_node || command == NmtCommand::reset_communication;
-}
-
 using Before = session::NodeLife;
-
-bool confirmed(session::Session& session, const Before& before, NmtCommand command) {
-  if (is_reset(command)) return session.can()->watch().boots(before.node) > before.boots;
-  return session.can()->watch().heartbeats(before.node) > before.heartbeats &&
-         session.can()->watch().state(before.node) == canopen::state_after(command);
-}
-
-Error unconfirmed(const Before& before, NmtCommand command, const session::Heartbeats& heartbeats,
-                  const canopen::NodeWatch& watch) {
-  auto error = drive_error(Errc::timeout, before.node,
-                           fmt::format("'{}' was sent but not confirmed", canopen::name(command)));
-  const auto& silent = heartbeats.silent;
-  if (is_reset(command))
-    error.hint =
-        "no boot-up message: it may have restarted with another node-ID or bitrate; `scan` shows who answers";
-  else if (std::find(silent.begin(), silent.end(), before.node) != silent.end())
-    error.hint =
-        fmt::format("the node sends no heartbeat: `heartbeat set 500ms -n {}` switches it on", before.node);
-  else if (watch.heartbeats(before.node) > before.heartbeats)
-    error.hint = "its heartbeats still show another state";
-  else
-    error.hint = "no heartbeat came; unless it is stopped, `read 0x1017` shows whether it sends any";
-  return error;
-}
-
-/// What is known of the command and this node; `confirmed`: empty where nobody waited for it.
-std::string_view result_of_nmt(const Before& entry, const std::optional<bool>& confirmed) {
-  if (confirmed.value_or(false)) return "confirmed";
-  return !confirmed && entry.alive ? "sent; the node is there" : "sent, not confirmed";
-}
-
-report::Table nmt_table(Context& context, std::span<const Before> before, NmtCommand command, bool waited) {
-  report::Table table;
-  // Two words for one thing.
-  const auto unless = [](bool told) { return told ? report::Show::json : report::Show::everywhere; };
-  table.columns = {
-      {"node"}, {"command"}, {"confirmed", "", unless(!waited)}, {"state"}, {"result", "", unless(waited)}};
-  for (const auto& entry : before) {
-    const auto state = waited ? context.session->can()->watch().state(entry.node) : std::nullopt;
-    auto known = waited ? std::optional(confirmed(*context.session, entry, command)) : std::nullopt;
-    if (!waited && entry.node != 0 && !entry.alive && context.session->can() != nullptr) known = false;
-    table.rows.push_back({entry.node == 0 ? Value("all") : Value(entry.node), canopen::name(command),
-                          known ? Value(*known) : Value(), state ? Value(canopen::name(*state)) : Value(),
-                          result_of_nmt(entry, known)});
-  }
-  return table;
-}
 
 Result<void> wait_for_boots(session::Session& session, std::span<const Before> nodes) {
   const auto all = [&] {
@@ -116,13 +66,19 @@ Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Bef
                                                    : session::wait_for_answers(session, nodes, kBootPatience);
         !back)
       return back;
+  if (is_reset(command))
+    if (const auto looked = session::look_for_second(session, nodes); !looked) return looked;
   if (const auto heard = session::hear_who_lives(session, nodes, kGuardPatience); !heard) return heard;
   // A stopped node is heard to be two only once it has started.
-  for (const auto& entry : nodes)
-    if (auto single = session::refuse_duplicate(session, entry.node); !stops && !single)
+  std::vector<std::uint8_t> doubled;
+  for (auto& entry : nodes)
+    if (auto single = session::refuse_duplicate(session, entry.node); !stops && !single) {
       context.errors.push_back(std::move(single.error()));
+      doubled.push_back(entry.node);
+      entry.alive = false;
+    }
   for (const auto& entry : nodes) {
-    if (entry.alive) continue;
+    if (entry.alive || std::ranges::find(doubled, entry.node) != doubled.end()) continue;
     auto error = drive_error(
         Errc::timeout, entry.node,
         fmt::format("'{}' was sent, not confirmed: nothing was heard of the node", canopen::name(command)),
@@ -133,43 +89,6 @@ Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Bef
       context.errors.push_back(std::move(error));
   }
   return {};
-}
-
-/// What a user may have set a moment ago, and a drive loses.
-constexpr std::string_view kSetAndNotStored =
-    "unstored changes of PDOs, COB-IDs, heartbeat (1017h) and heartbeat consumers (1016h, the watchdog)";
-
-std::string communication_goes() {
-  return fmt::format("by CiA 301, 1000h to 1FFFh go back to their power-on values: {} are lost",
-                     kSetAndNotStored);
-}
-
-std::string whom_nmt(std::span<const std::uint8_t> nodes) {
-  if (nodes.front() == 0) return "all nodes";
-  return nodes.size() == 1 ? fmt::format("node {}", nodes.front()) : fmt::format("{} nodes", nodes.size());
-}
-
-/// What is to be answered before a reset.
-std::string question_nmt(std::span<const std::uint8_t> nodes, NmtCommand command) {
-  if (command == NmtCommand::reset_node)
-    return fmt::format("Reset {}? Drives restart; a moving axis is no longer controlled.", whom_nmt(nodes));
-  return fmt::format(
-      "Reset the communication of {}? PDOs and heartbeats pause, so a moving axis may lose its control; {}.",
-      whom_nmt(nodes), communication_goes());
-}
-
-/// What a reset of the communication has done where its boot-up was seen, and does by the standard elsewhere.
-void tell_reset(Context& context, std::span<const Before> before, NmtCommand command, bool waited) {
-  if (command != NmtCommand::reset_communication) return;
-  bool unseen = false;
-  for (const auto& entry : before)
-    if (waited && confirmed(*context.session, entry, NmtCommand::reset_communication))
-      context.notices.push_back(
-          fmt::format("node {}: by CiA 301 1000h to 1FFFh now have their power-on values: {} are lost",
-                      entry.node, kSetAndNotStored));
-    else
-      unseen = true;
-  if (unseen) context.notices.push_back(communication_goes());
 }
 
 report::Value planned_frames(Context& context, NmtCommand command) {
@@ -200,11 +119,11 @@ Result<void> check_wait(const Context& context, bool wait) {
 }
 
 /// Until a heartbeat or a boot-up of each confirms the command.
-Result<report::Value> wait_for_all(Context& context, NmtCommand command, std::span<const Before> before,
+Result<report::Value> wait_for_all(Context& context, NmtCommand command, std::span<Before> before,
                                    const session::Heartbeats& heartbeats) {
   const auto done = [&] {
     return std::ranges::all_of(before,
-                               [&](const Before& b) { return confirmed(*context.session, b, command); });
+                               [&](const Before& b) { return is_confirmed(*context.session, b, command); });
   };
   const bool hopeless = heartbeats.silent.size() == before.size();
   const auto patience = is_reset(command) ? kBootPatience : std::max(kStatePatience, 2 * heartbeats.longest);
@@ -212,11 +131,27 @@ Result<report::Value> wait_for_all(Context& context, NmtCommand command, std::sp
   const session::Stretch stretch(*context.session, until, session::Stretch::End::at_latest);
   const auto waited = context.session->wait(done, until);
   if (!waited) return fail(waited.error());
+  if (is_reset(command))
+    if (const auto looked = session::look_for_second(*context.session, before); !looked)
+      return fail(looked.error());
+  for (const auto& entry : before)
+    if (auto single = session::refuse_duplicate(*context.session, entry.node); is_reset(command) && !single)
+      context.errors.push_back(std::move(single.error()));
   tell_reset(context, before, command, true);
   for (const auto& entry : before)
-    if (!confirmed(*context.session, entry, command))
+    if (!is_confirmed(*context.session, entry, command))
       context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->can()->watch()));
   return report::Value(nmt_table(context, before, command, true));
+}
+
+/// In the state stopped a node answers no SDO (CiA 301, 7.3.2.2.1), so that nothing tells one drive from two
+/// of its node-ID: their answers to node guarding are the same frame.
+Result<void> refuse_stopped(const session::Session& session, const Before& entry) {
+  if (entry.answers || session.watch().state(entry.node) != session::NodeState::stopped) return {};
+  return fail(drive_error(
+      Errc::refused, entry.node,
+      "it is stopped (NMT) and answers no SDO, so whether two drives have its node-ID is not known: not reset",
+      fmt::format("`nmt preop -n {}` first", entry.node)));
 }
 
 /// Whose drives they are is seen before what begins something is sent.
@@ -225,7 +160,11 @@ Result<void> look_before(Context& context, NmtCommand command, std::vector<Befor
   if (!is_reset(command) && command != NmtCommand::start) return {};
   const auto least = is_reset(command) ? session::kBeforeMotion : session::kBeforeWrites;
   if (const auto single = session::hold_single(session, nodes, least); !single) return single;
-  return is_reset(command) ? session::hear_who_lives(session, nodes, kGuardPatience) : Result<void>();
+  if (!is_reset(command)) return {};
+  if (const auto heard = session::hear_who_lives(session, nodes, kGuardPatience); !heard) return heard;
+  for (const auto& entry : nodes)
+    if (const auto may = refuse_stopped(session, entry); !may) return may;
+  return {};
 }
 
 Result<report::Value> run_nmt(Context& context, const Arguments& arguments, NmtCommand command) {
@@ -275,7 +214,8 @@ constexpr std::string_view kNmtElsewhere =
 
 constexpr std::string_view kResetDetails =
     "The node restarts as after power-on: settings neither stored (`store`) nor kept (--keep) are lost. A "
-    "node-ID that two drives share is refused. With "
+    "node-ID that two drives share is refused, and so is a stopped node: it answers no SDO, so that nothing "
+    "tells one drive from two. `nmt preop` first. With "
     "--wait it is done when the boot-up message confirms it; exit code 4 if none comes. `-n all` addresses "
     "every node.";
 

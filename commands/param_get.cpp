@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "command/command.hpp"
+#include "show/alarm_question.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
 
@@ -53,6 +54,8 @@ Result<report::Value> run_param_get(Context& context, const Arguments& arguments
   std::vector<show::Reading> readings;
   std::vector<session::SdoRequest> requests;
   for (const auto node : context.nodes) {
+    if (const auto agreed = show::confirm_unlisted(context, node, *targets); !agreed)
+      return fail(agreed.error());
     for (const auto& target : *targets) {
       readings.push_back({node, target, {}, Bytes{}});
       requests.push_back({.node = node, .object = target.address, .size = show::size_of(readings.back())});

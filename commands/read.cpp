@@ -8,8 +8,8 @@
 #include "command/transfer_option.hpp"
 #include "command/type_option.hpp"
 #include "session/session.hpp"
-#include "session/wary.hpp"
 #include "settings/file_transfer.hpp"
+#include "show/alarm_question.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
 
@@ -112,27 +112,11 @@ Result<report::Value> run_to_file(Context& context, const Arguments& arguments) 
                 "use a separate command and file for each object and node");
   const auto target = drive::resolve(context.profile, arguments.text("object"));
   if (!target) return fail(target.error());
+  if (const auto agreed = show::confirm_unlisted(context, context.nodes.front(), std::span(&*target, 1));
+      !agreed)
+    return fail(agreed.error());
   return settings::read_to_file(context, context.nodes.front(), *target,
                                 read_transfer(context, arguments, true), arguments.text("--to"));
-}
-
-/// Asks before a request that raises an alarm on the drive. Errc::refused where nobody agrees.
-Result<void> confirm_alarms(const Context& context, std::span<session::SdoRequest> requests) {
-  const auto alarm_of = [&](const session::SdoRequest& request) {
-    return session::access_alarm(*context.session, request.node, request.object);
-  };
-  std::string objects;
-  const session::SdoRequest* first = nullptr;
-  for (auto& request : requests) {
-    if (alarm_of(request).empty()) continue;
-    request.despite_alarm = true;
-    if (first == nullptr) first = &request;
-    append(objects, fmt::format("{} of node {}", to_string(request.object), request.node));
-  }
-  if (first == nullptr) return {};
-  return context.confirm(
-      fmt::format("Read {}? The data of {} have no such object, and a request for it raises the alarm {}.",
-                  objects, context.session->wary_of(first->node)->family, alarm_of(*first)));
 }
 
 Result<report::Value> run_read(Context& context, const Arguments& arguments) {
@@ -145,6 +129,8 @@ Result<report::Value> run_read(Context& context, const Arguments& arguments) {
     for (const auto& word : arguments.all("object")) {
       const auto targets = targets_of(context, node, word);
       if (!targets) return fail(targets.error());
+      if (const auto agreed = show::confirm_unlisted(context, node, *targets); !agreed)
+        return fail(agreed.error());
       const bool many = is_pattern(word) || targets->size() > 1;
       for (const auto& target : *targets) {
         readings.push_back({.node = node, .target = target, .type = *type, .one_of_many = many});
@@ -154,7 +140,7 @@ Result<report::Value> run_read(Context& context, const Arguments& arguments) {
       }
     }
   }
-  if (const auto agreed = confirm_alarms(context, requests); !agreed) return fail(agreed.error());
+  if (const auto agreed = show::confirm_alarms(context, requests); !agreed) return fail(agreed.error());
   auto answers = context.session->transfer(requests);
   for (std::size_t i = 0; i < readings.size(); ++i) readings[i].bytes = std::move(answers[i]);
   return report::Value(show::reading_table(context, readings));

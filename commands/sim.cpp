@@ -19,6 +19,7 @@ constexpr Parameter kSimParameters[] = {
 
 void tell_simulated(const Context& context, std::string_view url, report::List nodes) {
   const auto count = nodes.size();
+  context.front_end->wait_for_no_reader();
   context.emit({{"bus", std::string(url)}, {"nodes", std::move(nodes)}},
                fmt::format("{} drive{} on {}; Ctrl-C ends it", count, count == 1 ? "" : "s", url));
 }

@@ -12,9 +12,9 @@
 #include "motion/other_axes.hpp"
 #include "session/answer.hpp"
 #include "session/ethercat_network.hpp"
+#include "session/node_life.hpp"
 #include "session/state_pause.hpp"
 #include "show/fault_records.hpp"
-#include "show/owed_restart.hpp"
 #include "show/records.hpp"
 #include "show/ring_table.hpp"
 
@@ -40,28 +40,13 @@ constexpr ObjectAddress kObjects[] = {objects::kStatusword, objects::kModeDispla
 constexpr std::size_t kSizes[] = {2, 1, 2, 1, 2};  ///< CiA 301 and 402-2.
 constexpr std::size_t kCount = std::size(kObjects);
 
-/// Longest wait for a heartbeat that tells the NMT state.
-constexpr Duration kMostPatience = std::chrono::seconds(3);
-
 /// Waits until every node that sends heartbeats was heard.
 Result<void> hear_heartbeats(Context& context, std::span<const Result<Bytes>> answers) {
-  Duration longest{};
-  std::vector<std::uint8_t> expected;
-  for (std::size_t i = 0; i < context.nodes.size(); ++i) {
-    const auto period = session::number_in(answers[i * kCount + 4]);
-    if (!period || *period == 0 || context.session->watch().state(context.nodes[i])) continue;
-    expected.push_back(context.nodes[i]);
-    longest = std::max<Duration>(longest, std::chrono::milliseconds(*period & 0xFFFFU) * 3 / 2);
-  }
-  if (expected.empty()) return {};
-  const auto all_heard = [&] {
-    return std::all_of(expected.begin(), expected.end(),
-                       [&](auto n) { return context.session->watch().state(n).has_value(); });
-  };
-  const auto heard =
-      context.session->wait(all_heard, context.session->now() + std::min(longest, kMostPatience));
-  if (!heard) return fail(heard.error());
-  return {};
+  std::vector<session::HeartbeatPeriod> expected;
+  for (std::size_t i = 0; i < context.nodes.size(); ++i)
+    if (const auto period = session::number_in(answers[i * kCount + 4]))
+      expected.push_back({context.nodes[i], std::chrono::milliseconds(*period & 0xFFFFU)});
+  return session::hear_states(*context.session, expected);
 }
 
 /// Of those that answer; what they say is noted in the session's records.
@@ -200,9 +185,7 @@ Record status_record(Context& context, std::uint8_t node, std::span<const Result
     add_nmt_state(out, context, node, answers);
   add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
-  const auto owed = note_owed(context, node, restarted);
-  if (!owed.values.empty())
-    out.push_back({"restart_owed", show::owed_records(context.profile, owed.values), Show::json});
+  add_owed(context, node, restarted, out);
   const auto others = motion::other_axes(*context.session, context.profile, node);
   if (others.empty()) return out;
   context.notices.push_back(fmt::format("node {}: {}", node, motion::axes_text(others)));

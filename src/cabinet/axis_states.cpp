@@ -9,6 +9,7 @@
 #include "motion/kept_turn.hpp"
 #include "session/answer.hpp"
 #include "session/ethercat_network.hpp"
+#include "session/option_scope.hpp"
 #include "session/ring_state.hpp"
 #include "session/state_pause.hpp"
 #include "session/wary.hpp"
@@ -93,6 +94,8 @@ void AxisStates::look_on(const Bus& bus, std::vector<AxisState>& out) {
     return;
   }
   auto& session = **opened;
+  // Another drive may be there than the one that the file names.
+  const session::OptionScope checked(session, &session::Options::checks_numbers, true);
   std::vector<session::SdoRequest> requests;
   for (const auto* look : mine) {
     if (const auto profile = load_(look->axis->family)) {

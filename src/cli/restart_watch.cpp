@@ -4,8 +4,11 @@
 #include <utility>
 
 #include "canopen/node_list.hpp"
+#include "drive/standard_objects.hpp"
+#include "session/answer.hpp"
 #include "session/can_network.hpp"
 #include "session/identify.hpp"
+#include "session/open_bus.hpp"
 #include "session/option_scope.hpp"
 #include "show/identity.hpp"
 
@@ -27,10 +30,15 @@ RestartWatch::RestartWatch(session::Session& session, std::filesystem::path stat
   for (const auto node : canopen::every_node_id())
     if (auto kept = show::OwedRestartFile(folder_, session.url(), node).read(); kept && *kept) {
       in_file_[node] = objects_of((*kept)->values);
-      owed_.take_up(node, std::move((*kept)->values), std::move((*kept)->identity), (*kept)->by_power);
+      if ((*kept)->bus_bitrate) bitrates_[node] = *(*kept)->bus_bitrate;
+      owed_.take_up(node, std::move((*kept)->values), std::move((*kept)->identity), (*kept)->by_power,
+                    (*kept)->node_id);
     }
   session.options().exchanged = [this, next = std::move(session.options().exchanged)](const auto& exchange) {
+    note_answer(exchange);
     owed_.on_exchange(exchange, starts(exchange.node));
+    if (owed_.awaits_bitrate(exchange.node) && !bitrates_.contains(exchange.node))
+      if (const auto bitrate = session::bitrate_of(session_->url())) bitrates_[exchange.node] = *bitrate;
     if (next) next(exchange);
   };
 }
@@ -46,6 +54,50 @@ Result<void> RestartWatch::keep() {
   Result<void> out;
   for (const auto node : canopen::every_node_id())
     if (const auto kept = keep_node(node); !kept) out = kept;
+  silent_.fill(false);
+  answered_.fill(false);
+  for (const auto node : canopen::every_node_id()) restarts_[node] = starts(node).restarts;
+  return out;
+}
+
+void RestartWatch::note_answer(const session::Exchange& exchange) {
+  const bool silent = !exchange.result && exchange.result.error().code == Errc::timeout;
+  silent_[exchange.node & 0x7FU] = silent;
+  answered_[exchange.node & 0x7FU] = !silent;
+  if (exchange.written == nullptr && exchange.result) note_number(exchange);
+}
+
+void RestartWatch::note_number(const session::Exchange& exchange) {
+  auto& identity = heard_[exchange.node & 0x7FU];
+  identity.node = exchange.node;
+  const auto number = session::u32_in(exchange.result);
+  if (exchange.object == objects::kDeviceType) identity.device_type = number;
+  if (exchange.object == objects::kVendorId) identity.vendor_id = number;
+  if (exchange.object == objects::kProductCode) identity.product_code = number;
+  if (exchange.object == objects::kRevision) identity.revision = number;
+  if (exchange.object == objects::kSerialNumber) identity.serial = number;
+  if (exchange.object == objects::kDeviceName) identity.device_name = session::text_in(exchange.result);
+}
+
+/// Whether something has happened that a drive does which goes by its new node-ID or bitrate.
+bool RestartWatch::may_be_over(std::uint8_t node) {
+  const auto bitrate = bitrates_.find(node);
+  if (bitrate != bitrates_.end() && answered_[node] && owed_.awaits_bitrate(node) &&
+      session::bitrate_of(session_->url()).value_or(bitrate->second) != bitrate->second)
+    return true;
+  const auto next = show::next_node_id(owed_.values(node, starts(node)), owed_.node_id_of(node));
+  if (!next || *next == node) return false;
+  return silent_[node] || answered_[*next] || starts(*next).restarts != restarts_[*next];
+}
+
+show::OwedRestart RestartWatch::record(std::uint8_t node, session::Identity identity) {
+  show::OwedRestart out;
+  out.identity = std::move(identity);
+  out.values = owed_.values(node, starts(node));
+  out.by_power = owed_.ends_by_power(node);
+  out.node_id = owed_.node_id_of(node);
+  if (const auto at = bitrates_.find(node); at != bitrates_.end() && owed_.awaits_bitrate(node))
+    out.bus_bitrate = at->second;
   return out;
 }
 
@@ -54,14 +106,23 @@ Result<void> RestartWatch::keep_node(std::uint8_t node) {
   const bool changed = owed_.take_changed(node);
   if (!waited && !changed) return {};
   const show::OwedRestartFile file(folder_, session_->url(), node);
+  if (waited && may_be_over(node)) {
+    const session::Deaf deaf(*session_);
+    if (show::is_over(*session_, node, record(node, owed_.kept_of(node).value_or(heard_[node])))) {
+      owed_.forget(node);
+      bitrates_.erase(node);
+      in_file_.erase(node);
+      file.remove();
+      return {};
+    }
+  }
   // Somebody has said that it was restarted.
   if (!changed && !file.is_there()) owed_.forget(node);
   if (!changed) return {};
   if (waited) take_from_others(node, file);
-  const auto identity = waited ? identity_now(node) : session::Identity();
-  const auto& values = owed_.values(node, starts(node));
-  in_file_[node] = objects_of(values);
-  if (!values.empty()) return file.write({identity, values, owed_.ends_by_power(node)});
+  const auto owed = record(node, waited ? identity_now(node) : session::Identity());
+  in_file_[node] = objects_of(owed.values);
+  if (!owed.values.empty()) return file.write(owed);
   file.remove();
   return {};
 }
@@ -86,7 +147,7 @@ session::Identity RestartWatch::identity_now(std::uint8_t node) {
   if (now && kept) owed_.settle_identity(node, show::change_of(*kept, *now).empty());
   if (now) return std::move(*now);
   if (kept) return *kept;
-  session::Identity out;
+  auto out = heard_[node];
   out.node = node;
   return out;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -21,7 +22,14 @@ class RestartWatch {
   RestartWatch(const RestartWatch&) = delete;
   RestartWatch& operator=(const RestartWatch&) = delete;
 
-  void learn(std::uint8_t node, const drive::Profile& profile) { owed_.learn(node, profile); }
+  void learn(std::uint8_t node, const drive::Profile& profile) {
+    owed_.learn(node, profile, session_->modbus() != nullptr, starts(node));
+  }
+  /// Vendor objects that were written to a node whose family nobody has named: whether they wait is not
+  /// known.
+  std::vector<ObjectAddress> unjudged(std::uint8_t node) { return owed_.unjudged(node, starts(node)); }
+  /// They were reported.
+  void drop_unjudged(std::uint8_t node) { owed_.drop_unjudged(node); }
   /// Brings the folder up to date: between two lines. Asks a drive who it is where something has changed.
   /// Errc::file.
   Result<void> keep();
@@ -29,12 +37,22 @@ class RestartWatch {
  private:
   session::Starts starts(std::uint8_t node);
   Result<void> keep_node(std::uint8_t node);
+  void note_answer(const session::Exchange& exchange);
+  void note_number(const session::Exchange& exchange);
+  bool may_be_over(std::uint8_t node);
+  show::OwedRestart record(std::uint8_t node, session::Identity identity);
   void take_from_others(std::uint8_t node, const show::OwedRestartFile& file);
   session::Identity identity_now(std::uint8_t node);
 
   session::Session* session_;
   std::filesystem::path folder_;
   session::OwedRestarts owed_;
+  // Since keep() was called last.
+  std::array<bool, 128> silent_{};                  ///< The last transfer of the node was not answered.
+  std::array<bool, 128> answered_{};                ///< It was.
+  std::array<std::uint32_t, 128> restarts_{};       ///< How often it had started then.
+  std::array<session::Identity, 128> heard_{};      ///< What the nodes were heard to say of themselves.
+  std::map<std::uint8_t, std::uint32_t> bitrates_;  ///< Of the bus when a bitrate was written to the node.
   std::map<std::uint8_t, std::vector<ObjectAddress>> in_file_;  ///< As this program left it, or found it.
 };
 

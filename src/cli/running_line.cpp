@@ -182,6 +182,11 @@ Result<const drive::Profile*> RunningLine::family(const std::string& name) {
 
 session::Protection::Hold RunningLine::protect() { return shell_->protect(session::Care::unsettled); }
 
+void RunningLine::wait_for_no_reader() {
+  const auto turn = shell_->take_turn();
+  shell_->console().set_waits_for_none(true);
+}
+
 std::vector<std::uint8_t> RunningLine::energised_on(std::string_view url) const {
   const auto turn = shell_->take_turn();
   return shell_->energised_on(url);

@@ -39,6 +39,7 @@ class RunningLine final : public show::Audience, public command::FrontEnd {
   Result<session::Session*> open_bus(const cabinet::Cabinet& cabinet, const cabinet::Bus& bus) override;
   std::string_view bus_url() const override { return settings_->bus; }
   session::Protection::Hold protect() override;
+  void wait_for_no_reader() override;
   std::vector<std::uint8_t> energised_on(std::string_view url) const override;
   bool has_adapter(std::string_view adapter) const override;
   Result<void> release_adapter(std::string_view adapter) override;

@@ -14,14 +14,10 @@
 #include "cli/output_files.hpp"
 #include "cli/terminal/signals.hpp"
 #include "command/help_text.hpp"
-#include "drive/access_alarms.hpp"
 #include "report/catalogue.hpp"
-#include "session/ethercat_network.hpp"
-#include "session/modbus_network.hpp"
 #include "session/scan.hpp"
 #include "session/serve_registers.hpp"
 #include "session/serve_ring.hpp"
-#include "session/wary.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cli {
@@ -30,26 +26,6 @@ namespace {
 using command::Effect;
 using command::Needs;
 using report::Value;
-
-/// How a slave is reached, and which registers a unit has, the data of its family tell.
-void learn_family(session::Session& session, std::span<const std::uint8_t> nodes,
-                  const drive::Profile& profile) {
-  auto* ring = session.ethercat();
-  auto* line = session.modbus();
-  for (const auto node : nodes) {
-    if (ring != nullptr) ring->learn(node, profile.rules.coe);
-    session::be_wary_of_family(session, node, profile);
-    if (line != nullptr) line->learn(node, profile.rules.modbus);
-  }
-}
-
-/// Whether the command reads of nodes. Whoever writes asks the drive what it is. A recording (replay:)
-/// answers only what was asked when it was made.
-bool only_reads(const command::Command& command, const command::Arguments& arguments,
-                const session::Session& session) {
-  return includes(command.needs, Needs::node) && !command.to_silent && !command.to_all &&
-         command.effect_with(arguments) == Effect::reads && !session.url().starts_with("replay:");
-}
 
 /// Whatever is told of a line speaks of axes by their names.
 void name_axes_in(const show::AxisNames& names, command::Context& context, Value& result) {
@@ -118,6 +94,7 @@ Outcome Shell::perform(const std::vector<std::string>& words) {
   console_->set_quiet(applied->quiet);
   const ShownWait shown(*this);
   console_->set_verbose(applied->verbose);
+  console_->set_waits_for_none(false);  // As the last line may have wanted it.
   cabinet_told_ = false;
   told_energised_.clear();
   auto out = perform_parsed(*parsed, *applied);
@@ -199,23 +176,6 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
   return changes ? hold_serials(run) : Result<void>();
 }
 
-/// Before anything else is read: finds the drives that must not be asked for what they do not have.
-void Shell::be_wary(Run& run, const command::Arguments& arguments) {
-  auto& session = *run.context.session;
-  const auto* profile = run.context.profile;
-  auto nodes = run.context.nodes;
-  const bool any = profile == nullptr || profile->is_generic() || profile->of_file;
-  const bool is_decided = profile != nullptr && drive::has_access_alarms(profile->rules);
-  // Another drive may be there since its boot-up, and what an earlier line named may be wrong.
-  // A stop goes out before anything is read.
-  if (is_decided || run.command->way_out)
-    nodes.clear();
-  else if (!any || !only_reads(*run.command, arguments, session))
-    std::erase_if(nodes, [&](std::uint8_t node) { return session.wary_of(node) == nullptr; });
-  if (session.modbus() == nullptr) session::consider_numbers(session, nodes);
-  if (profile != nullptr) learn_family(session, run.context.nodes, *profile);
-}
-
 /// A command without a bus takes the nodes as they are written.
 Result<void> Shell::name_nodes(Run& run) {
   if (run.settings.nodes.empty()) return {};
@@ -255,6 +215,7 @@ void Shell::keep_restarts() {
 
 Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto& errors = run.context.errors;
+  judge_writes(run);
   keep_restarts();
   const bool met_loss = run.context.session != nullptr && run.context.session->take_met_loss();
   hear_second_node(run);
@@ -262,6 +223,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   const bool is_lost = tell_lost_bus(run, met_loss);
   if (!is_lost) tell_energised(run);
   tell_second_node(run);
+  if (!is_lost) tell_contradicted(run);
   learn_from(run);
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
     run.context.notices.push_back(std::move(notice));

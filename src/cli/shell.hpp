@@ -206,6 +206,9 @@ class Shell {
   struct PartRun;
   Result<void> check_parts(const ParsedLine& line, const std::vector<LinePart>& parts);
   void tell_place(const Run& run);
+  void judge_writes(Run& run);
+  static std::string key_of(session::Session& session, std::uint8_t node);
+  std::string family_by_identity(session::Session& session, std::uint8_t node);
   void keep_restarts();
   std::vector<Outcome> perform_in_turn(const ParsedLine& line, std::vector<LinePart> parts);
   std::vector<Outcome> perform_side_by_side(const ParsedLine& line, std::vector<LinePart> parts);
@@ -218,6 +221,7 @@ class Shell {
   Result<const drive::Profile*> device_of_node(Run& run, const Error& why);
   Result<void> prepare_nodes(Run& run);
   void be_wary(Run& run, const command::Arguments& arguments);
+  void tell_contradicted(Run& run);
   static Result<void> hold_serials(Run& run);
   void tell_trace_failure(Run& run);
   /// What a drive is decides what is said of it, whichever command made it so.

@@ -34,6 +34,8 @@ class FrontEnd : public settings::LineReader {
   virtual std::string_view bus_url() const = 0;
   /// While it lives a second signal does not end the process; the first one is heard.
   virtual session::Protection::Hold protect() = 0;
+  /// To the end of the line nothing that is printed waits for its reader: others are served meanwhile.
+  virtual void wait_for_no_reader() = 0;
   /// The nodes that were left energised over this bus or adapter, which is open now or was lost.
   virtual std::vector<std::uint8_t> energised_on(std::string_view url) const = 0;
   /// Whether a bus that is open has this adapter: `slcan:/dev/ttyACM0`.

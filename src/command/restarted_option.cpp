@@ -20,4 +20,10 @@ show::OwedRestart note_owed(Context& context, std::uint8_t node, bool restarted)
   return owed;
 }
 
+void add_owed(Context& context, std::uint8_t node, bool restarted, report::Record& out) {
+  const auto owed = note_owed(context, node, restarted);
+  if (!owed.values.empty())
+    out.push_back({"restart_owed", show::owed_records(context.profile, owed.values), report::Show::json});
+}
+
 }  // namespace servoctl::command

@@ -19,4 +19,7 @@ Result<bool> says_restarted(const Context& context, const Arguments& arguments);
 /// forgotten first.
 show::OwedRestart note_owed(Context& context, std::uint8_t node, bool restarted);
 
+/// The same, and adds the values to the record of the node in JSON, as `restart_owed`, where any wait.
+void add_owed(Context& context, std::uint8_t node, bool restarted, report::Record& out);
+
 }  // namespace servoctl::command

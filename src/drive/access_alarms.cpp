@@ -15,8 +15,8 @@ bool has_unlisted_number(const Rules& rules, ObjectAddress object) {
   });
 }
 
-/// What takes the power of a drive away, and shows that it is gone: an alarm costs less than a drive that
-/// stays energised, whatever a file of the user's own lists.
+}  // namespace
+
 bool stops_a_drive(ObjectAddress object) {
   constexpr ObjectAddress kStopping[] = {objects::kControlword, objects::kStatusword,
                                          objects::kModeOfOperation, objects::kModeDisplay,
@@ -24,19 +24,20 @@ bool stops_a_drive(ObjectAddress object) {
   return std::ranges::find(kStopping, object) != std::end(kStopping);
 }
 
-}  // namespace
-
 bool has_access_alarms(const Rules& rules) {
   return !rules.fault.object_alarm.empty() || !rules.fault.sub_index_alarm.empty();
 }
 
-std::string_view access_alarm(const Profile& profile, ObjectAddress object) {
+std::string_view possible_alarm(const Profile& profile, ObjectAddress object) {
   const auto& rules = profile.rules;
-  if (!has_access_alarms(rules) || stops_a_drive(object) || profile.dictionary.find(object) != nullptr ||
-      has_unlisted_number(rules, object))
+  if (!has_access_alarms(rules) || stops_a_drive(object) || profile.dictionary.find(object) != nullptr)
     return {};
   const bool has_index = profile.dictionary.object(object.index) != nullptr;
   return has_index ? rules.fault.sub_index_alarm : rules.fault.object_alarm;
+}
+
+std::string_view access_alarm(const Profile& profile, ObjectAddress object) {
+  return has_unlisted_number(profile.rules, object) ? std::string_view() : possible_alarm(profile, object);
 }
 
 }  // namespace servoctl::drive

@@ -164,6 +164,8 @@ Result<void> GatewayServer::serve_lane(std::uint8_t node, Lane& lane) {
     if (const auto sent = lane.channel->on_time(session_->now()); !sent) return sent;
     const auto result = lane.channel->take_result();
     if (!result) return {};
+    // Another drive may come in its place.
+    if (!*result && result->error().code == Errc::timeout) session_->doubt_numbers(node);
     const auto client = clients_.find(lane.who);
     if (lane.numbers && client != clients_.end() && client->second.order && take_number(lane, *result)) {
       if (!lane.numbers) begin(lane, *client->second.order);

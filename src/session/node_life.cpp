@@ -13,6 +13,8 @@ namespace {
 
 /// A heartbeat period that is longer is not waited for.
 constexpr Duration kMostPeriod = std::chrono::seconds(2);
+/// Longest wait for a heartbeat that tells the NMT state.
+constexpr Duration kMostWait = std::chrono::seconds(3);
 
 /// Between two heartbeats of a node; of one whose period nobody knows, as long as may be.
 Duration longest_silence(Duration period) {
@@ -38,7 +40,8 @@ Result<void> ask_who_answers(Session& session, std::span<NodeLife> nodes) {
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto code = answers[i] ? Errc::negative : answers[i].error().code;
     if (code == Errc::bus || code == Errc::interrupted) return fail(answers[i].error());
-    nodes[i].alive = nodes[i].alive || code != Errc::timeout;
+    nodes[i].answers = code != Errc::timeout;
+    nodes[i].alive = nodes[i].alive || nodes[i].answers;
   }
   return {};
 }
@@ -64,6 +67,18 @@ Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration l
   return {};
 }
 
+Result<void> look_for_second(Session& session, std::span<const NodeLife> nodes) {
+  if (session.can() == nullptr) return {};
+  std::vector<NodeLife> unknown;
+  for (const auto& one : nodes)
+    if (!one.answers) unknown.push_back(one);
+  if (const auto asked = ask_who_answers(session, unknown); !asked) return asked;
+  std::vector<std::uint8_t> ids;
+  for (const auto& one : unknown)
+    if (one.answers) ids.push_back(one.node);
+  return ids.empty() ? Result<void>() : settle_duplicates(session, ids, kBeforeMotion);
+}
+
 Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duration patience) {
   const auto heard = [&] {
     for (auto& one : nodes)
@@ -82,6 +97,22 @@ Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duratio
   }
   const auto waited = session.wait(heard, session.now() + patience);
   return waited ? Result<void>() : fail(waited.error());
+}
+
+Result<void> hear_states(Session& session, std::span<const HeartbeatPeriod> periods) {
+  Duration longest{};
+  std::vector<std::uint8_t> expected;
+  for (const auto& [node, period] : periods) {
+    if (period == Duration::zero() || session.watch().state(node)) continue;
+    expected.push_back(node);
+    longest = std::max<Duration>(longest, period * 3 / 2);
+  }
+  if (expected.empty()) return {};
+  const auto all_heard = [&] {
+    return std::ranges::all_of(expected, [&](auto node) { return session.watch().state(node).has_value(); });
+  };
+  const auto heard = session.wait(all_heard, session.now() + std::min(longest, kMostWait));
+  return heard ? Result<void>() : fail(heard.error());
 }
 
 Heartbeats read_heartbeats(Session& session, std::span<const std::uint8_t> nodes) {

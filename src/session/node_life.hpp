@@ -14,6 +14,7 @@ struct NodeLife {
   std::uint32_t boots = 0;       ///< Boot-up messages and
   std::uint32_t heartbeats = 0;  ///< heartbeats, when it was looked at.
   bool alive = false;
+  bool answers = false;  ///< An SDO request.
 };
 
 /// From now on.
@@ -30,10 +31,24 @@ Result<void> wait_for_answers(Session& session, std::span<NodeLife> nodes, Durat
 /// `least`: as that of settle_duplicates(). Errc::refused, and errors of the bus.
 Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration least);
 
+/// After a reset, of those that answered no SDO request before it: asks them, and hears whether two drives
+/// have started. Not where frames are not heard. Errors of the bus.
+Result<void> look_for_second(Session& session, std::span<const NodeLife> nodes);
+
 /// Waits until of each that is not known to be alive a boot-up, a heartbeat or an answer to node guarding was
 /// heard, at most for `patience`, or for the heartbeat period of a node where that is longer. Errors of the
 /// bus.
 Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duration patience);
+
+/// 1017h of a node.
+struct HeartbeatPeriod {
+  std::uint8_t node = 0;
+  Duration period{};
+};
+
+/// Waits until the state of each that sends heartbeats was heard: for one and a half of the longest period, 3
+/// s at most. Errors of the bus.
+Result<void> hear_states(Session& session, std::span<const HeartbeatPeriod> periods);
 
 /// How heartbeats of nodes come.
 struct Heartbeats {

@@ -8,12 +8,22 @@
 
 namespace servoctl::session {
 
+namespace {
+
+/// Objects of the vendor (CiA 301, 7.4.1).
+constexpr std::uint16_t kFirstOfVendor = 0x2000;
+constexpr std::uint16_t kLastOfVendor = 0x5FFF;
+
+}  // namespace
+
 bool OwedRestarts::waits(const Node& node, ObjectAddress object) {
-  if (node.profile == nullptr || object == node.node_id || object == node.bitrate) return false;
+  if (node.profile == nullptr) return false;
   const auto target = drive::target_at(node.profile, object);
   const auto effect = target.parameter != nullptr ? target.parameter->effect
                       : target.entry != nullptr   ? target.entry->effect
                                                   : od::Effect::unstated;
+  // No drive changes its own address or bitrate while it answers, unless its data say so.
+  if (object == node.node_id || object == node.bitrate) return effect != od::Effect::immediate;
   return effect == od::Effect::restart;
 }
 
@@ -54,14 +64,49 @@ void OwedRestarts::take(Node& node, ObjectAddress object, const Bytes& now, bool
   node.values.push_back({object, is_known ? std::optional(seen->second) : std::nullopt, now, node.to_flash});
 }
 
-void OwedRestarts::learn(std::uint8_t node, const drive::Profile& profile) {
+void OwedRestarts::learn(std::uint8_t node, const drive::Profile& profile, bool registers, Starts starts) {
   auto& known = nodes_[node & 0x7FU];
   if (known.profile == &profile) return;
   known.profile = &profile;
-  known.node_id = drive::place_of(profile, profile.rules.nmt.node_id);
+  known.node_id =
+      drive::place_of(profile, registers ? profile.rules.modbus.node_id : profile.rules.nmt.node_id);
   known.bitrate = drive::place_of(profile, profile.rules.nmt.bitrate);
   known.flash_switch = drive::place_of(profile, profile.rules.store.flash_switch);
   known.by_power = profile.rules.nmt.address_after == drive::NmtRules::Restart::power_cycle;
+  const auto before = known.unjudged_since;
+  const bool restarted =
+      known.by_power ? starts.power_ups != before.power_ups : starts.restarts != before.restarts;
+  for (const auto& written : std::exchange(known.unjudged, {})) {
+    if (restarted || !waits(known, written.object)) continue;
+    settle(known, starts);
+    take(known, written.object, written.stored, true);
+    if (!known.values.empty()) known.values.back().kept = known.values.back().kept || written.kept;
+  }
+}
+
+std::vector<ObjectAddress> OwedRestarts::unjudged(std::uint8_t node, Starts starts) {
+  auto& known = nodes_[node & 0x7FU];
+  if (starts.restarts != known.unjudged_since.restarts) known.unjudged.clear();
+  std::vector<ObjectAddress> out;
+  for (const auto& written : known.unjudged) out.push_back(written.object);
+  return out;
+}
+
+void OwedRestarts::note_unjudged(Node& node, const Exchange& exchange, Starts starts) {
+  if (exchange.written == nullptr) return;
+  if (exchange.object.index == objects::kStoreIndex)
+    for (auto& value : node.unjudged) value.kept = true;
+  if (exchange.object.index < kFirstOfVendor || exchange.object.index > kLastOfVendor) return;
+  if (starts.restarts != node.unjudged_since.restarts) node.unjudged.clear();
+  node.unjudged_since = starts;
+  std::erase_if(node.unjudged, [&](const OwedValue& value) { return value.object == exchange.object; });
+  node.unjudged.push_back({.object = exchange.object, .stored = *exchange.written});
+}
+
+bool OwedRestarts::awaits_bitrate(std::uint8_t node) const {
+  const auto& known = nodes_[node & 0x7FU];
+  return known.bitrate &&
+         std::ranges::find(known.values, *known.bitrate, &OwedValue::object) != known.values.end();
 }
 
 /// The drive is told to store what it has, or where its values go from now on.
@@ -84,7 +129,8 @@ void OwedRestarts::note_storing(Node& node, const Exchange& exchange) {
 
 void OwedRestarts::on_exchange(const Exchange& exchange, Starts starts) {
   auto& node = nodes_[exchange.node & 0x7FU];
-  if (!exchange.result || node.profile == nullptr) return;
+  if (!exchange.result) return;
+  if (node.profile == nullptr) return note_unjudged(node, exchange, starts);
   note_storing(node, exchange);
   if (!waits(node, exchange.object)) return;
   settle(node, starts);
@@ -92,12 +138,14 @@ void OwedRestarts::on_exchange(const Exchange& exchange, Starts starts) {
   take(node, exchange.object, written ? *exchange.written : *exchange.result, written);
 }
 
-void OwedRestarts::take_up(std::uint8_t node, std::vector<OwedValue> values, Identity of, bool by_power) {
+void OwedRestarts::take_up(std::uint8_t node, std::vector<OwedValue> values, Identity of, bool by_power,
+                           std::optional<ObjectAddress> node_id) {
   auto& known = nodes_[node & 0x7FU];
   for (auto& value : values) value.earlier = true;
   known.values = std::move(values);
   known.kept_of = std::move(of);
   known.by_power = by_power;
+  known.node_id = node_id;
 }
 
 void OwedRestarts::add_from_others(std::uint8_t node, std::vector<OwedValue> values) {

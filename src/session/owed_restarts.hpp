@@ -34,13 +34,19 @@ struct Starts {
 /// A restart that is heard ends it, and so does the old value, written again.
 class OwedRestarts {
  public:
-  /// What the node is: its data say which values wait. Node-ID and bitrate are left out: how they come into
-  /// force is the matter of who changes them.
-  void learn(std::uint8_t node, const drive::Profile& profile);
+  /// What the node is: its data say which values wait, among them its node-ID and bitrate. What was written
+  /// before is judged as well. `registers`: the node has its number on a Modbus line.
+  void learn(std::uint8_t node, const drive::Profile& profile, bool registers, Starts starts);
+  /// Vendor objects that were written while nobody knew what the node is: whether they wait is not known.
+  std::vector<ObjectAddress> unjudged(std::uint8_t node, Starts starts);
+  /// They were reported.
+  void drop_unjudged(std::uint8_t node) { nodes_[node & 0x7FU].unjudged.clear(); }
   void on_exchange(const Exchange& exchange, Starts starts);
 
-  /// What waits since an earlier session, the drive that it is kept of, and whether only power ends it.
-  void take_up(std::uint8_t node, std::vector<OwedValue> values, Identity of, bool by_power);
+  /// What waits since an earlier session, the drive that it is kept of, whether only power ends it, and where
+  /// its node-ID is.
+  void take_up(std::uint8_t node, std::vector<OwedValue> values, Identity of, bool by_power,
+               std::optional<ObjectAddress> node_id);
   /// What another program has kept meanwhile.
   void add_from_others(std::uint8_t node, std::vector<OwedValue> values);
   /// It was restarted without being heard: nothing waits.
@@ -50,6 +56,10 @@ class OwedRestarts {
   void settle_identity(std::uint8_t node, bool same);
 
   const std::vector<OwedValue>& values(std::uint8_t node, Starts starts);
+  /// Where the node-ID of the node is, as far as it is known.
+  const std::optional<ObjectAddress>& node_id_of(std::uint8_t node) const { return nodes_[node].node_id; }
+  /// Whether a bitrate is among what waits.
+  bool awaits_bitrate(std::uint8_t node) const;
   /// Whether an NMT reset is no restart of this drive (drive::NmtRules::Restart::power_cycle).
   bool ends_by_power(std::uint8_t node) const { return nodes_[node].by_power; }
   /// The drive that the values are kept of, until it was seen to be the one that is there.
@@ -63,6 +73,8 @@ class OwedRestarts {
     std::optional<ObjectAddress> node_id, bitrate, flash_switch;
     bool to_flash = false;  ///< Writes go to the memory that outlives power-off.
     std::vector<OwedValue> values;
+    std::vector<OwedValue> unjudged;
+    Starts unjudged_since;
     std::map<ObjectAddress, Bytes> seen;  ///< Values in force, as far as they were read.
     std::optional<Identity> kept_of;
     bool by_power = false;
@@ -72,6 +84,7 @@ class OwedRestarts {
   static bool waits(const Node& node, ObjectAddress object);
   static void settle(Node& node, Starts starts);
   static void note_storing(Node& node, const Exchange& exchange);
+  static void note_unjudged(Node& node, const Exchange& exchange, Starts starts);
   static void take(Node& node, ObjectAddress object, const Bytes& now, bool written);
 
   std::array<Node, 128> nodes_{};

@@ -6,6 +6,7 @@
 #include "session/can_network.hpp"
 #include "session/interleave.hpp"
 #include "session/transfer_run.hpp"
+#include "session/wary.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -37,6 +38,7 @@ Session::Session(std::unique_ptr<can::Bus> bus, std::string url, Options options
     : Session(std::make_unique<CanNetwork>(std::move(bus), url), url, std::move(options)) {}
 
 std::vector<Result<Bytes>> Session::transfer(std::span<const SdoRequest> requests) {
+  if (options_.checks_numbers) consider_before(*this, requests);
   auto out = TransferRun(*this, requests).run();
   met_loss_ = met_loss_ || std::any_of(out.begin(), out.end(), [](const auto& result) {
                 return !result && result.error().code == Errc::bus;
@@ -115,7 +117,7 @@ std::vector<NodeEvent> Session::take_events() {
     // Another drive may come in its place.
     if (std::holds_alternative<NodeEvent::Gone>(event->what)) {
       identities_.forget(event->node);
-      wary_[event->node & 0x7FU].boots.reset();
+      doubt_numbers(event->node);
     }
     out.push_back(std::move(*event));
   }

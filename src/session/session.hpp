@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -74,6 +75,9 @@ struct Options {
   std::function<void(const Stretch* stretch, TimePoint now)> waiting;
   /// The folders with the families, some of which raise access alarms (consider_numbers()); may be empty.
   std::function<std::span<const std::filesystem::path>()> drive_folders = {};
+  /// Before the first request that could raise an access alarm, 1000h and 1018h decide whether the node is
+  /// such a drive (consider_before()), whatever family the user named.
+  bool checks_numbers = false;
   /// Told of every transfer that was tried, whatever carried it; may be empty.
   std::function<void(const Exchange&)> exchanged;
   /// As Network::set_ordered(), of this session; may be empty.
@@ -129,8 +133,13 @@ class Session {
   void be_wary(std::uint8_t node, std::shared_ptr<const drive::Profile> profile, bool by_numbers);
   /// Null where there is none.
   const drive::Profile* wary_of(std::uint8_t node) const { return wary_[node & 0x7FU].profile.get(); }
-  /// Whether its numbers decided since its last boot-up: later another drive may be there.
+  /// Whether its numbers decided since its last boot-up, and since it was silent last: later another drive
+  /// may be there.
   bool is_considered(std::uint8_t node) const { return wary_[node & 0x7FU].boots == watch().boots(node); }
+  /// The node was silent: another drive may be there, so its numbers decide again.
+  void doubt_numbers(std::uint8_t node) { wary_[node & 0x7FU].boots.reset(); }
+  /// Objects that a drive of no known family takes for an alarm, as far as they were looked for.
+  std::set<ObjectAddress>& harmless() { return harmless_; }
   /// Values written to the flash of a node since the bus was opened, where each write wears it.
   std::size_t& flash_writes(std::uint8_t node) { return flash_writes_[node]; }
 
@@ -189,6 +198,7 @@ class Session {
         boots;  ///< Boot count of the node when its numbers decided; empty: they did not.
   };
   std::array<Wary, 128> wary_;
+  std::set<ObjectAddress> harmless_;
   std::array<std::unique_ptr<ObjectChannel>, 128> channels_;  ///< Those nobody uses now.
   TimePoint received_at_{};
   std::vector<const Stretch*> stretches_;

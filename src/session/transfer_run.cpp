@@ -166,6 +166,7 @@ void TransferRun::finish(Lane& channel, Result<Bytes> result) {
     return ask(channel, request.transfer == canopen::Transfer::domain ? canopen::Transfer::automatic
                                                                       : request.transfer);
   }
+  if (silent) session_->doubt_numbers(request.node);
   if (silent && result.error().hint.empty())
     result.error().hint = session_->network().silence_hint(request.node);
   auto& place = results_[channel.current];

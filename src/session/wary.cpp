@@ -1,6 +1,8 @@
 #include "session/wary.hpp"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -44,6 +46,39 @@ void consider_numbers(Session& session, std::span<const std::uint8_t> nodes) {
     numbers.product_code = u32_in(answers[i + 2]);
     if (numbers.device_type || numbers.vendor_id || numbers.product_code) consider_numbers(session, numbers);
   }
+}
+
+namespace {
+
+/// Whether the object is one that a drive of some family does not have, and takes for an alarm.
+bool could_raise(Session& session, ObjectAddress object) {
+  if (std::ranges::find(kDecidingNumbers, object) != kDecidingNumbers.end() || drive::stops_a_drive(object) ||
+      session.harmless().contains(object))
+    return false;
+  const auto folders = session.options().drive_folders();
+  for (const auto& family : drive::find_families(folders)) {
+    const auto rules = drive::shared_rules(family);
+    if (!rules || !drive::has_access_alarms(**rules)) continue;
+    const auto profile = drive::shared_profile(family.name, folders);
+    if (profile && !drive::possible_alarm(**profile, object).empty()) return true;
+  }
+  session.harmless().insert(object);
+  return false;
+}
+
+}  // namespace
+
+void consider_before(Session& session, std::span<const SdoRequest> requests) {
+  if (!session.options().drive_folders || session.modbus() != nullptr) return;
+  std::vector<std::uint8_t> nodes;
+  for (const auto& request : requests) {
+    const auto node = request.node;
+    if (session.is_considered(node) || session.wary_of(node) != nullptr ||
+        std::ranges::find(nodes, node) != nodes.end())
+      continue;
+    if (could_raise(session, request.object)) nodes.push_back(node);
+  }
+  consider_numbers(session, nodes);
 }
 
 namespace {

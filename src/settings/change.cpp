@@ -16,6 +16,7 @@
 #include "settings/keeping_nodes.hpp"
 #include "settings/register_writes.hpp"
 #include "settings/stored_copies.hpp"
+#include "show/alarm_question.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -207,6 +208,9 @@ Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Tar
                            std::string_view value, std::optional<od::DataType> type) {
   auto meaning = writable_meaning(node, target, type);
   if (!meaning) return fail(meaning.error());
+  if (!desk.dry_run || !type)
+    if (const auto agreed = show::confirm_unlisted(desk, node, std::span(&target, 1)); !agreed)
+      return fail(agreed.error());
   if (!type && (!meaning->type_known || !meaning->size_known)) {
     meaning = learn_size(desk, node, target, *meaning);
     if (!meaning) return fail(meaning.error());

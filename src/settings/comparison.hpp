@@ -57,6 +57,9 @@ Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, 
 std::vector<std::string> lines_between(const drive::Profile* profile, const Side& a, const Side& b,
                                        bool whole);
 
+/// The COB-IDs of PDOs of which a side has a value and not this one; such as the family has.
+std::vector<ObjectAddress> cob_ids_lacking(const drive::Profile& profile, const Side& side);
+
 /// The exit code 1 of a comparison that found differences.
 Error differences_error(const Comparison& comparison, const Side& a, const Side& b);
 

@@ -1,10 +1,38 @@
 #include <fmt/format.h>
+#include <set>
 
+#include "canopen/pdo.hpp"
 #include "session/write_plan.hpp"
 #include "settings/backup_formats.hpp"
 #include "settings/comparison.hpp"
 
 namespace servoctl::settings {
+namespace {
+
+/// A PDO whose COB-ID B does not have keeps its own: the lines make it invalid first, and valid at the end.
+void add_cob_ids(const Side& a, session::Values& wanted) {
+  session::Values own;
+  for (const auto& [object, data] : wanted) {
+    const auto place = canopen::pdo_at(object.index);
+    if (!place || a.values.at(object) == data) continue;
+    const ObjectAddress cob_id{canopen::Pdo{place->direction, place->number}.communication_index(), 1};
+    if (const auto ours = a.values.find(cob_id); ours != a.values.end()) own.emplace(*ours);
+  }
+  wanted.merge(own);
+}
+
+}  // namespace
+
+std::vector<ObjectAddress> cob_ids_lacking(const drive::Profile& profile, const Side& side) {
+  std::set<ObjectAddress> out;
+  for (const auto& [object, data] : side.values) {
+    const auto place = canopen::pdo_at(object.index);
+    if (!place) continue;
+    const ObjectAddress cob_id{canopen::Pdo{place->direction, place->number}.communication_index(), 1};
+    if (side.values.count(cob_id) == 0 && profile.dictionary.find(cob_id) != nullptr) out.insert(cob_id);
+  }
+  return {out.begin(), out.end()};
+}
 
 std::vector<std::string> lines_between(const drive::Profile* profile, const Side& a, const Side& b,
                                        bool whole) {
@@ -24,9 +52,10 @@ std::vector<std::string> lines_between(const drive::Profile* profile, const Side
     else if (both)
       wanted.emplace(object, data);
   }
+  add_cob_ids(a, wanted);
   for (const auto& [object, ours] : a.values) {
     if (wanted.count(object) > 0) present.emplace(object, ours);
-    if (whole && b.values.count(object) == 0)
+    if (whole && b.values.count(object) == 0 && wanted.count(object) == 0)
       comments.push_back(fmt::format("# {} alone has {}", comment_text(a.title), to_string(object)));
   }
   std::vector<std::string> out;

@@ -7,7 +7,10 @@
 #include "base/file.hpp"
 #include "base/regular_files.hpp"
 #include "base/text.hpp"
+#include "canopen/node_id.hpp"
 #include "session/identify.hpp"
+#include "session/open_bus.hpp"
+#include "session/option_scope.hpp"
 #include "show/bus_name.hpp"
 #include "show/field_reader.hpp"
 #include "show/identity.hpp"
@@ -91,6 +94,10 @@ Result<std::optional<OwedRestart>> OwedRestartFile::read() const {
   if (list == nullptr) fields.refuse("values");
   if (fields.error()) return damaged(*fields.error());
   OwedRestart out{.identity = std::move(*identity), .values = {}, .by_power = by_power};
+  out.node_id = parse_object_address(fields.text("node_id"));
+  if (const auto bitrate = fields.number("bus_bitrate"))
+    out.bus_bitrate = static_cast<std::uint32_t>(*bitrate);
+  if (fields.error()) return damaged(*fields.error());
   for (const auto& one : *list) {
     auto value = value_of(one, file);
     if (!value) return fail(value.error());
@@ -112,6 +119,8 @@ Result<void> OwedRestartFile::write(const OwedRestart& owed) const {
                         {"node", std::uint64_t{node_}},
                         {"time", utc_now_text()},
                         {"by_power", owed.by_power},
+                        {"node_id", owed.node_id ? Value(to_string(*owed.node_id)) : Value()},
+                        {"bus_bitrate", owed.bus_bitrate ? Value(*owed.bus_bitrate) : Value()},
                         {"identity", identity_record(lasting(owed.identity))},
                         {"values", std::move(list)}};
   return write_file_atomically(path_, report::to_json(document) + "\n");
@@ -122,17 +131,68 @@ void OwedRestartFile::remove() const {
   fs::remove(path_, error);
 }
 
+std::optional<std::uint8_t> next_node_id(const std::vector<OwedValue>& values,
+                                         const std::optional<ObjectAddress>& node_id) {
+  if (!node_id) return std::nullopt;
+  const auto waiting = std::ranges::find(values, *node_id, &OwedValue::object);
+  if (waiting == values.end() || waiting->stored.empty() || waiting->stored.size() > 8) return std::nullopt;
+  const auto number = load_le(waiting->stored);
+  return number >= 1 && number <= canopen::kLastNode ? std::optional(static_cast<std::uint8_t>(number))
+                                                     : std::nullopt;
+}
+
+namespace {
+
+/// Whether they cannot be one drive, as far as both say what they are.
+bool is_other(const session::Identity& kept, const session::Identity& now) {
+  return !other_kind(kept, now).empty() || (kept.serial && now.serial && *kept.serial != *now.serial);
+}
+
+bool says_who(const session::Identity& identity) { return identity.device_type || identity.vendor_id; }
+
+/// Whether the drive of the record answers at the node-ID that waited. Of drives without serial numbers only
+/// the kind is known.
+bool answers_at_next(session::Session& session, std::uint8_t node, const OwedRestart& owed) {
+  const auto next = next_node_id(owed.values, owed.node_id);
+  if (!next || *next == node || (!says_who(owed.identity) && session.modbus() == nullptr)) return false;
+  const auto there = session::read_identity(session, *next);
+  return there && !is_other(owed.identity, *there);
+}
+
+/// Whether a drive at this node that cannot be told apart from the one of the record has another node-ID in
+/// its memory than the one that waits.
+bool lacks_node_id(session::Session& session, std::uint8_t node, const OwedRestart& owed) {
+  if (owed.identity.serial.value_or(0) != 0 || !next_node_id(owed.values, owed.node_id)) return false;
+  const auto waiting = std::ranges::find(owed.values, *owed.node_id, &OwedValue::object);
+  const auto holds = session.upload(node, *owed.node_id);
+  return holds && *holds != waiting->stored;
+}
+
+}  // namespace
+
+bool is_over(session::Session& session, std::uint8_t node, const OwedRestart& owed) {
+  const session::OptionScope once(session, &session::Options::retries, 0U);
+  const auto here = session::read_identity(session, node);
+  if (!here) return here.error().code == Errc::timeout && answers_at_next(session, node, owed);
+  if (says_who(owed.identity) && is_other(owed.identity, *here)) return true;
+  const auto bitrate = owed.bus_bitrate ? session::bitrate_of(session.url()) : std::nullopt;
+  if (bitrate && *bitrate != *owed.bus_bitrate) return true;
+  return lacks_node_id(session, node, owed);
+}
+
 OwedRestart owed_restart(session::Session& session, const fs::path& state_folder, std::uint8_t node) {
-  auto kept = OwedRestartFile(state_folder, session.url(), node).read();
+  const OwedRestartFile file(state_folder, session.url(), node);
+  auto kept = file.read();
   if (!kept) {
     OwedRestart out;
     out.unread = kept.error();
     return out;
   }
   if (!*kept) return {};
-  const auto now = session::read_identity(session, node);
-  const bool told = (*kept)->identity.device_type || (*kept)->identity.vendor_id;
-  if (now && told && !change_of((*kept)->identity, *now).empty()) return {};
+  if (is_over(session, node, **kept)) {
+    file.remove();
+    return {};
+  }
   // What it does not hold any more, a restart has taken, or somebody else.
   std::erase_if((*kept)->values, [&](const OwedValue& value) {
     const auto holds = session.upload(node, value.object);

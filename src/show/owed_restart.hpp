@@ -19,8 +19,10 @@ namespace servoctl::show {
 struct OwedRestart {
   session::Identity identity;
   std::vector<session::OwedValue> values;
-  bool by_power = false;             ///< An NMT reset is no restart of this drive.
-  std::optional<Error> unread = {};  ///< What is kept of it cannot be read.
+  bool by_power = false;                          ///< An NMT reset is no restart of this drive.
+  std::optional<ObjectAddress> node_id = {};      ///< Where its node-ID is.
+  std::optional<std::uint32_t> bus_bitrate = {};  ///< Of the bus, if a new bitrate is among the values.
+  std::optional<Error> unread = {};               ///< What is kept of it cannot be read.
 };
 
 /// The file in the folder for state that holds it: one for each bus, however that was written, and node.
@@ -40,8 +42,17 @@ class OwedRestartFile {
   std::filesystem::path path_;
 };
 
+/// The node-ID that waits for the restart.
+std::optional<std::uint8_t> next_node_id(const std::vector<session::OwedValue>& values,
+                                         const std::optional<ObjectAddress>& node_id);
+
+/// Whether the drive has restarted since, or is no longer at this node, as far as it can be known: another
+/// drive is there, or it answers with the node-ID or at the bitrate that waited. Asks the drives.
+bool is_over(session::Session& session, std::uint8_t node, const OwedRestart& owed);
+
 /// What is stored in a node and comes into force with its next restart, where it is the drive that this is
-/// kept of: it is asked who it is only where something is kept. One that does not say is taken for it.
+/// kept of: it is asked who it is only where something is kept. One that does not say is taken for it. What
+/// is over is forgotten.
 OwedRestart owed_restart(session::Session& session, const std::filesystem::path& state_folder,
                          std::uint8_t node);
 

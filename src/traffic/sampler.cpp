@@ -10,6 +10,7 @@
 #include "base/number.hpp"
 #include "drive/assumed_unit.hpp"
 #include "session/measure.hpp"
+#include "show/alarm_question.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::traffic {
@@ -72,6 +73,8 @@ Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> nam
     for (const auto& name : names) {
       const auto target = drive::resolve(desk.profile, name);
       if (!target) return fail(target.error());
+      if (const auto agreed = show::confirm_unlisted(desk, node, std::span(&*target, 1)); !agreed)
+        return fail(agreed.error());
       auto label = desk.chinese ? target->label_zh() : target->label();
       if (label.empty()) label = to_string(target->address);
       out.channels_.push_back({node, *target, std::move(label), desk.nodes.size() > 1});

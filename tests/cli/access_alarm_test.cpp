@@ -2,7 +2,10 @@
 // and sub_index_alarm): no command asks for one, with the family named or not.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -111,6 +114,51 @@ TEST_F(AccessAlarm, AWriteOfAnObjectThatTheFamilyLacksIsNotSent) {
       std::string::npos)
       << text();
   EXPECT_EQ(access_alarms(lines.frames), "");
+}
+
+/// The family that the user names may be wrong: the drive's numbers decide before such a request.
+TEST_F(AccessAlarm, NoReadWithTheWrongFamilyNamedRaisesOne) {
+  for (const auto* line :
+       {"read 0x603F -n 1 -d gsd600", "read 0x603F -n 1 -d gsd600 -y", "read Pn0214 0x1008 -n 1,2 -d gsd600",
+        "param get Pn0214 -n 1 -d gsd600", "watch 0x603F --for 100ms -n 1 -d gsd600",
+        "status -n all -d gsd600", "pdo show -n 1 -d gsd600", "scope 0x603F --for 100ms -n 1 -d gsd600"}) {
+    lines.forget_drives();
+    EXPECT_NE(lines.perform(line, {}, false), 70) << line << text();
+    EXPECT_EQ(access_alarms(lines.frames), "") << line;
+    EXPECT_FALSE(lines.frames.empty()) << line;
+  }
+  EXPECT_EQ(lines.perform("read 0x603F -n 1 -d gsd600 -y", {}, false), 5);
+  EXPECT_NE(text().find("not sent: the data of da200 have no such object"), std::string::npos) << text();
+  EXPECT_NE(text().find("node 1: not a gsd600: its 0x1000:0 is 0x04020200"), std::string::npos) << text();
+}
+
+TEST_F(AccessAlarm, NoAxisOfACabinetFileThatNamesTheWrongFamilyRaisesOne) {
+  const auto file = fs::temp_directory_path() / fmt::format("servoctl-wrong-{}.toml", ::getpid());
+  std::ofstream(file) << "[bus.main]\nurl = \"sim:da200@1,da200@2\"\n[axis.lift]\nbus = \"main\"\nnode = 1\n"
+                         "family = \"gsd600\"\n";
+  (void)lines.perform(fmt::format("cabinet show --cabinet {}", file.string()), {}, false);
+  EXPECT_EQ(access_alarms(lines.frames), "") << text();
+  EXPECT_FALSE(lines.frames.empty()) << text();
+  fs::remove(file);
+}
+
+TEST_F(AccessAlarm, ANumberThatNoTableListsIsAskedForAfterAQuestion) {
+  for (const auto* line :
+       {"param get P1.17 -n 1", "read P1.17 -n 1", "read 0x2111 -n 1", "param set P1.17=5 -n 1",
+        "watch P1.17 --for 100ms -n 1", "read P1.17 -n 1 --to DIR/p117.bin"}) {
+    EXPECT_EQ(lines.perform(line), 8) << line << text();
+    EXPECT_NE(
+        text().find("The data of da200 do not list it; if the drive does not have it, the request raises "
+                    "the alarm Er26-1."),
+        std::string::npos)
+        << line << text();
+    EXPECT_EQ(access_alarms(lines.frames), "") << line;
+  }
+  EXPECT_NE(lines.perform("param get P1.17 -n 1"), 0);
+  EXPECT_NE(text().find("Ask node 1 for P1.17 (0x2111:0)?"), std::string::npos) << text();
+  EXPECT_EQ(lines.perform("param get P1.17 -n 1 -y"), 5);
+  EXPECT_NE(access_alarms(lines.frames), "") << "the simulated drive does not have it";
+  EXPECT_EQ(lines.perform("param get P0.03 -n 1"), 0) << text();
 }
 
 TEST_F(AccessAlarm, TheDriveIsInFaultAfterIt) {

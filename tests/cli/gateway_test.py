@@ -223,4 +223,68 @@ with open(text, "w", encoding="utf-8") as file:
     file.write("mine")
 refused(3, "that is a file or a folder, and no socket", *bus, "--listen", text)
 check("a file is not replaced", open(text, encoding="utf-8").read() == "mine")
+
+# Nobody has to read the line that they print.
+def unread():
+    """A pipe that is full, and that nobody reads."""
+    reader, writer = os.pipe()
+    os.set_blocking(writer, False)
+    try:
+        while True:
+            os.write(writer, b"x" * 4096)
+    except BlockingIOError:
+        pass
+    os.set_blocking(writer, True)
+    return reader, writer
+
+
+def closed():
+    reader, writer = os.pipe()
+    os.close(reader)
+    return (writer,)
+
+
+def serves(listen):
+    end = time.monotonic() + 10
+    while time.monotonic() < end:
+        try:
+            with socket.create_connection(tuple(listen.rsplit(":", 1)), 1) as client:
+                client.settimeout(2)
+                return ask(client, "[1] 1 r 0x1000 0 u32") == ["[1] 131474"]
+        except ConnectionError:
+            time.sleep(0.05)
+        except OSError:
+            return False
+    return False
+
+
+for name, descriptors in (("a full pipe", unread()), ("a pipe without reader", closed()), ("a full disk", (os.open("/dev/full", os.O_WRONLY),))):
+    listen = f"127.0.0.1:{free_port()}"
+    bus = f"local:gateway-unread-{os.getpid()}"
+    process = subprocess.Popen([servoctl, "gateway", "-b", "sim:gsd600@1", "--listen", listen], env=env, stdin=subprocess.DEVNULL,
+                               stdout=descriptors[-1], stderr=subprocess.DEVNULL)
+    check(f"a gateway serves although its output goes to {name}", serves(listen))
+    process.send_signal(signal.SIGINT)
+    try:
+        left = process.wait(20)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        left = None
+    check(f"and ends by Ctrl-C: {left}", left in (0, 7))
+    drives = subprocess.Popen([servoctl, "sim", "gsd600@1", "-b", bus], env=env, stdin=subprocess.DEVNULL, stdout=descriptors[-1],
+                              stderr=subprocess.DEVNULL)
+    end = time.monotonic() + 10
+    answer = None
+    while time.monotonic() < end and (answer is None or answer.returncode != 0):
+        answer = subprocess.run([servoctl, "read", "0x1000", "-n", "1", "-b", bus, "--timeout", "100ms"], env=env, capture_output=True, text=True)
+    check(f"so does sim: {answer.stderr}", answer.returncode == 0)
+    drives.send_signal(signal.SIGINT)
+    try:
+        left = drives.wait(20)
+    except subprocess.TimeoutExpired:
+        drives.kill()
+        left = None
+    check(f"and ends by Ctrl-C: {left}", left in (0, 7))
+    for descriptor in descriptors:
+        os.close(descriptor)
 finish()

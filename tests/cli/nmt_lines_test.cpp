@@ -35,6 +35,19 @@ TEST_F(NmtLines, ASignOfLifeIsSaid) {
   EXPECT_TRUE(says("confirmed")) << all();
 }
 
+TEST_F(NmtLines, AStoppedNodeIsNotResetBecauseItMayBeTwo) {
+  constexpr const char* kPlace = "-n 1 -b sim:gsd600@1";
+  for (const auto* command : {"reset", "reset --wait", "reset-comm"}) {
+    ASSERT_EQ(run(fmt::format("nmt stop {}", kPlace)), 0) << all();
+    const auto boots = shell->session()->watch().boots(1);
+    EXPECT_EQ(run(fmt::format("nmt {} --yes {}", command, kPlace)), 8) << command << all();
+    EXPECT_TRUE(says("whether two drives have its node-ID is not known") && says("`nmt preop -n 1")) << all();
+    EXPECT_EQ(shell->session()->watch().boots(1), boots) << "it was not restarted";
+  }
+  EXPECT_EQ(run(fmt::format("nmt preop {}", kPlace)), 0) << all();
+  EXPECT_EQ(run(fmt::format("nmt reset --yes {}", kPlace)), 0) << all();
+}
+
 TEST_F(NmtLines, OfAStoppedNodeThatIsSilentNothingIsKnown) {
   EXPECT_EQ(run("nmt stop -n 99 -b sim:gsd600@1"), 0) << all();
   EXPECT_TRUE(says("'stop' was sent, not confirmed: nothing was heard of the node")) << all();

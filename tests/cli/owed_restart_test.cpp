@@ -225,6 +225,110 @@ TEST_F(OwedRestart, OfARestoreAndOfABackupInLinesToo) {
   EXPECT_FALSE(owes(kDrive)) << all();
 }
 
+/// What a new node-ID and bitrate are of each family, and what writes them.
+struct AddressLine {
+  const char* family;
+  const char* line;
+  const char* name;
+};
+
+TEST_F(OwedRestart, ANewNodeIdAndBitrateWaitAsOtherValuesDo) {
+  for (const AddressLine one : {AddressLine{"gsd600", "param set Pn0049=5", "Pn0049"},
+                                {"gsd600", "param set Pn0048=6", "Pn0048"},
+                                {"da200", "param set P4.05=5", "P4.05"},
+                                {"da200", "param set P4.02=2", "P4.02"},
+                                {"ts", "param set Fn_9A=5 --unlock", "Fn_9A"},
+                                {"ts", "param set Fn_9C=250 --unlock", "Fn_9C"},
+                                {"dm", "write 0x2003:1 5", "0x2003:1"},
+                                {"dm", "write 0x2003:2 1", "0x2003:2"}}) {
+    fs::remove_all(folder / "state");
+    begin();
+    const auto place = fmt::format("-n 1 -d {0} -b sim:{0}@1", one.family);
+    ASSERT_EQ(run(fmt::format("{} --yes {}", one.line, place)), 0) << one.name << all();
+    EXPECT_EQ(run(fmt::format("status {}", place)), 0) << one.name << all();
+    EXPECT_TRUE(says("in force after a restart") && says(one.name)) << one.name << all();
+    EXPECT_EQ(run(fmt::format("info {}", place)), 0) << one.name << all();
+    EXPECT_TRUE(says("in force after a restart") && says(one.name)) << one.name << all();
+  }
+}
+
+TEST_F(OwedRestart, ANewNodeIdIsInForceWhereTheDriveAnswersWithIt) {
+  const show::OwedRestartFile file(folder / "state", "sim:gsd600@1", 1);
+  ASSERT_EQ(run(fmt::format("param set Pn0049=5 --keep --yes {}", kDrive)), 0) << all();
+  ASSERT_TRUE(file.is_there());
+  (void)run(fmt::format("nmt reset --yes {}", kDrive));
+  EXPECT_FALSE(file.is_there()) << all();
+  EXPECT_FALSE(owes("-n 5 -d gsd600 -b sim:gsd600@1")) << all();
+}
+
+TEST_F(OwedRestart, ARestartToANewNodeIdThatNobodyHeardIsFound) {
+  constexpr const char* kBus = "sim:gsd600@5";
+  const show::OwedRestartFile file(folder / "state", kBus, 1);
+  session::Identity drive;
+  drive.node = 1;
+  drive.device_type = 0x0002'0192;
+  const show::OwedRestart owed{.identity = drive,
+                               .values = {{{0x2000, 0x32}, Bytes{1, 0}, Bytes{5, 0}, true}},
+                               .node_id = ObjectAddress{0x2000, 0x32}};
+  for (const auto* line : {"status -n 1 -d gsd600", "status -n 5 -d gsd600", "read 0x6041 -n 5"}) {
+    ASSERT_TRUE(file.write(owed));
+    begin();
+    (void)run(fmt::format("{} -b {}", line, kBus));
+    EXPECT_FALSE(file.is_there()) << line << all();
+  }
+}
+
+TEST_F(OwedRestart, ANewNodeIdThatNobodyAnswersWithStillWaits) {
+  constexpr const char* kBus = "sim:gsd600@7";
+  const show::OwedRestartFile file(folder / "state", kBus, 1);
+  session::Identity drive;
+  drive.node = 1;
+  drive.device_type = 0x0002'0192;
+  ASSERT_TRUE(file.write({.identity = drive,
+                          .values = {{{0x2000, 0x32}, Bytes{1, 0}, Bytes{5, 0}, true}},
+                          .node_id = ObjectAddress{0x2000, 0x32}}));
+  begin();
+  (void)run(fmt::format("status -n 1 -d gsd600 -b {}", kBus));
+  (void)run(fmt::format("status -n 7 -d gsd600 -b {}", kBus));
+  EXPECT_TRUE(file.is_there()) << all();
+}
+
+/// Another drive of the kind, without a serial number, has come to the old node-ID.
+TEST_F(OwedRestart, ADriveThatLaterHasTheOldNodeIdOwesNothing) {
+  const show::OwedRestartFile file(folder / "state", "sim:gsd600@1", 1);
+  session::Identity drive;
+  drive.node = 1;
+  drive.device_type = 0x0002'0192;
+  ASSERT_TRUE(file.write({.identity = drive,
+                          .values = {{{0x2000, 0x32}, Bytes{1, 0}, Bytes{5, 0}, true},
+                                     {{0x2003, 2}, Bytes{0, 0}, Bytes{1, 0}, true}},
+                          .node_id = ObjectAddress{0x2000, 0x32}}));
+  begin();
+  EXPECT_FALSE(owes(kDrive)) << "its Pn0601 is 1 as delivered: " << all();
+  EXPECT_FALSE(file.is_there()) << all();
+}
+
+TEST_F(OwedRestart, InfoHasItAsAFieldAsStatusHas) {
+  for (const auto& [set, place] :
+       {std::pair{"param set Pn0601=0", "-n 1 -d gsd600 -b sim:gsd600@1"},
+        std::pair{"param set Fn_00=20 --unlock", "-n 1 -d ts -b modbus:sim:ts@1"}}) {
+    EXPECT_EQ(run(fmt::format("info {} --json", place)), 0) << all();
+    EXPECT_FALSE(says(R"("restart_owed")")) << all();
+    ASSERT_EQ(run(fmt::format("{} --yes {}", set, place)), 0) << all();
+    EXPECT_EQ(run(fmt::format("info {} --json", place)), 0) << all();
+    EXPECT_TRUE(says(R"("restart_owed":[{"index":)")) << all();
+  }
+}
+
+TEST_F(OwedRestart, AWriteWithoutTheFamilyIsJudgedByTheIdentity) {
+  ASSERT_EQ(run("write 0x2003:2 0 --type u16 -n 1 -b sim:gsd600@1"), 0) << all();
+  EXPECT_TRUE(says("node 1: written, in force after a restart")) << all();
+  EXPECT_TRUE(owes(kDrive)) << all();
+  EXPECT_EQ(run("nmt reset --yes -n 1 -b sim:gsd600@1"), 0) << all();
+  ASSERT_EQ(run("write 0x2000:7 1 --type u16 -n 1 -b sim:gsd600@1"), 0) << all();
+  EXPECT_FALSE(says("restart")) << "it acts at once: " << all();
+}
+
 TEST_F(OwedRestart, AnotherDriveAtTheNodeOwesNothing) {
   const show::OwedRestartFile file(folder / "state", "sim:gsd600@1", 1);
   session::Identity other;

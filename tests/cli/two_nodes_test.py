@@ -76,6 +76,11 @@ for number, (first, second) in enumerate([("gsd600@1", "gsd600@1"), ("gsd600@1",
             check(what + f"{' '.join(words)} is refused\n{answer.stderr}", answer.returncode == 8 and "two nodes answer" in answer.stderr)
         answer = run(bus, "nmt", "preop", "-n", "1")
         check(what + f"nmt preop is not\n{answer.stderr}", answer.returncode != 8)
+        run(bus, "nmt", "stop", "-n", "1")
+        for words in (["nmt", "reset", "--yes"], ["nmt", "reset-comm", "--yes"]):
+            answer = run(bus, *words, "-n", "1")
+            check(what + f"{' '.join(words)} is refused while they are stopped\n{answer.stdout}{answer.stderr}", answer.returncode == 8)
+        run(bus, "nmt", "preop", "-n", "1")
         answer = run(bus, "backup", "two-nodes.json", "-n", "1", "-d", family)
         check(what + f"no file is made of both\n{answer.stderr}",
               answer.returncode == 8 and "two nodes answer" in answer.stderr and not os.path.exists("two-nodes.json"))

@@ -149,6 +149,29 @@ TEST_F(Wary, IdentificationAsksOneDa200ForItsNumbersOnly) {
   }
 }
 
+TEST_F(Wary, ANamedFamilyIsCheckedBeforeTheFirstRequestThatCouldRaiseAnAlarm) {
+  auto session = open("da200");
+  session.options().checks_numbers = true;
+  asked.clear();
+  EXPECT_TRUE(session.upload(1, objects::kStatusword).has_value());
+  EXPECT_TRUE(session.upload(1, objects::kPositionActual).has_value());
+  EXPECT_EQ(asked, (std::vector<ObjectAddress>{objects::kStatusword, objects::kPositionActual}))
+      << "every drive that raises alarms has these";
+  asked.clear();
+  EXPECT_EQ(session.upload(1, kNotOfDa200).error().abort_code, canopen::sdo_abort::kNoObject);
+  EXPECT_EQ(asked,
+            (std::vector<ObjectAddress>{objects::kDeviceType, objects::kVendorId, objects::kProductCode}));
+}
+
+TEST_F(Wary, SilenceOfTheNodeEndsWhatWasFound) {
+  auto session = open("da200");
+  consider_numbers(session, nodes);
+  ASSERT_TRUE(session.is_considered(1));
+  ASSERT_TRUE(session.can()->send(can::parse_frame("000#0201").value()).has_value());
+  EXPECT_EQ(session.upload(1, objects::kStatusword).error().code, Errc::timeout);
+  EXPECT_FALSE(session.is_considered(1)) << "another drive may come in its place";
+}
+
 TEST_F(Wary, WhatWasFoundEndsWithTheNextBootUp) {
   auto session = open("da200");
   consider_numbers(session, nodes);
