@@ -11,7 +11,6 @@ file(MAKE_DIRECTORY ${share}/zsh/vendor-completions)
 file(RENAME ${share}/zsh/site-functions/_servoctl ${share}/zsh/vendor-completions/_servoctl)
 file(REMOVE_RECURSE ${share}/zsh/site-functions)
 configure_file(${from}/README.Debian ${doc}/README.Debian COPYONLY)
-configure_file(${from}/lintian-overrides ${share}/lintian/overrides/servoctl COPYONLY)
 execute_process(COMMAND env LC_ALL=C date -R -u -d ${CPACK_SERVOCTL_DATE} OUTPUT_VARIABLE day OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 file(WRITE ${doc}/changelog.Debian "servoctl (${CPACK_PACKAGE_VERSION}-1) unstable; urgency=medium
 

@@ -12,7 +12,7 @@ endforeach()
 
 # Debian packages whose code is in the program: headers in any, archives in the one that is shipped.
 set(linked_packages libcli11-dev,nlohmann-json3-dev,libexpected-dev,libtomlplusplus-dev,libfmt-dev)
-if(TARGET servoctl_fmt)
+if(SERVOCTL_STATIC)
   string(REGEX MATCH "^[0-9]+" major ${CMAKE_CXX_COMPILER_VERSION})
   string(APPEND linked_packages ,libpugixml-dev,libnl-3-dev,zlib1g-dev,libstdc++-${major}-dev,libc6-dev)
 endif()
@@ -38,7 +38,11 @@ install(FILES completions/servoctl.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fis
 install(FILES packaging/60-servoctl.rules DESTINATION lib/udev/rules.d)
 
 set(SERVOCTL_MAINTAINER "The servoctl developers <noreply@example.org>" CACHE STRING "Who packs it, for the .deb: NAME <ADDRESS>")
-set(CPACK_GENERATOR "DEB;TGZ")
+if(SERVOCTL_STATIC)
+  set(CPACK_GENERATOR TGZ)
+else()
+  set(CPACK_GENERATOR DEB)
+endif()
 set(CPACK_PACKAGE_NAME servoctl)
 set(CPACK_PACKAGE_VENDOR "The servoctl developers")
 set(CPACK_PACKAGE_CONTACT "${SERVOCTL_MAINTAINER}")
@@ -53,10 +57,7 @@ set(CPACK_RESOURCE_FILE_LICENSE ${CMAKE_SOURCE_DIR}/LICENSE)
 set(CPACK_DEBIAN_PACKAGE_SECTION electronics)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
-set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)  # libc6, in the version that the program needs; the rest is inside.
-if(SERVOCTL_PACKS_RELOCATIONS AND TARGET servoctl_fmt)
-  set(CPACK_DEBIAN_PACKAGE_DEPENDS "libc6 (>= 2.36)")  # dpkg-shlibdeps looks at symbols, not at GLIBC_ABI_DT_RELR.
-endif()
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "can-utils, libcap2-bin")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_SOURCE_DIR}/packaging/postinst)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)

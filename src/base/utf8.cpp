@@ -66,6 +66,25 @@ CodePoint decode_utf8(std::string_view text) {
   return {value, size};
 }
 
+void append_utf8(char32_t character, std::string& out) {
+  const auto tail = [&](unsigned shift) { out += static_cast<char>(0x80U | (character >> shift & 0x3FU)); };
+  if (character < 0x80) {
+    out += static_cast<char>(character);
+  } else if (character < 0x800) {
+    out += static_cast<char>(0xC0U | character >> 6U);
+    tail(0);
+  } else if (character < 0x10000) {
+    out += static_cast<char>(0xE0U | character >> 12U);
+    tail(6);
+    tail(0);
+  } else {
+    out += static_cast<char>(0xF0U | character >> 18U);
+    tail(12);
+    tail(6);
+    tail(0);
+  }
+}
+
 bool is_utf8(std::string_view text) {
   while (!text.empty()) {
     const auto c = decode_utf8(text);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace servoctl {
@@ -15,6 +16,9 @@ struct CodePoint {
 /// The first character of a text that is not empty. Overlong forms, surrogates and what lies beyond U+10FFFF
 /// are none (Unicode 15, table 3-7): one byte of them is taken.
 CodePoint decode_utf8(std::string_view text);
+
+/// Appends a character that is no surrogate and not above U+10FFFF.
+void append_utf8(char32_t character, std::string& out);
 
 /// Whether the text is UTF-8 throughout.
 bool is_utf8(std::string_view text);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <iterator>
 
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_needs.hpp"

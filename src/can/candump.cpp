@@ -1,5 +1,6 @@
 #include "can/candump.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 

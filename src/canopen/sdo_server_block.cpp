@@ -1,5 +1,7 @@
 // The block transfers of the SDO server (CiA 301, 7.2.4.2.9 to 7.2.4.2.16 and 7.2.4.3.8 to 7.2.4.3.16).
 #include "canopen/cob_id.hpp"
+
+#include <utility>
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_frame.hpp"
 #include "canopen/sdo_server.hpp"

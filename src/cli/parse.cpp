@@ -1,10 +1,10 @@
 #include "cli/parse.hpp"
 
 #include <fmt/format.h>
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <limits>
 #include <map>
-#include "cli/cli11.hpp"
 
 #include "base/text.hpp"
 #include "cli/unknown_command.hpp"
@@ -49,22 +49,34 @@ std::size_t first_plain_word(const std::vector<std::string>& words) {
   return std::min(i, words.size());
 }
 
+bool is_option(const Parameter& parameter) { return parameter.name.starts_with("-"); }
+
 /// `FILE`, as the synopsis of `help` has it.
 std::string as_in_help(const Parameter& parameter) {
-  return parameter.name.starts_with("-") ? std::string(parameter.name) : upper(parameter.name);
+  return is_option(parameter) ? std::string(parameter.name) : upper(parameter.name);
+}
+
+/// Whether the word can name the option: `--timeout`, `--timeout=2s`, `-n`, `-n3`, `-vj`.
+bool can_name(std::string_view word, const Parameter& option) {
+  if (word.size() < 2 || word.front() != '-') return false;
+  if (word.substr(0, word.find('=')) == option.name) return true;
+  return word[1] != '-' && !option.short_name.empty() && word.find(option.short_name.back()) != word.npos;
 }
 
 /// Every value stays text, because CLI11 reads "010" as 8 and refuses "6040h". What one line gave is
-/// forgotten before the next is read.
+/// forgotten before the next is read. CLI11 knows the options that some line named: it compares each that is
+/// added with all before it, a third of what a one-shot line costs.
 class LineParser {
  public:
   explicit LineParser(const Command& command)
       : command_(&command), app_(std::string(command.summary), std::string(command.path)) {
     app_.set_help_flag();
     app_.allow_extras();
-    for (const auto& parameter : command.parameters) bind(parameter);
+    for (const auto& parameter : command.parameters) bound_.push_back({&parameter, nullptr, {}});
     for (const auto& parameter : command::global_options())
-      if (!command::has_own(command, parameter)) bind(parameter);
+      if (!command::has_own(command, parameter)) bound_.push_back({&parameter, nullptr, {}});
+    for (auto& entry : bound_)
+      if (!is_option(*entry.parameter)) bind(entry);
   }
 
   /// Behind the first `--` stand values of arguments, whatever they look like: CLI11 does not see them. Where
@@ -87,30 +99,41 @@ class LineParser {
  private:
   struct Bound {
     const Parameter* parameter;
-    CLI::Option* option;
+    CLI::Option* option;  ///< Null until a line names it.
     std::vector<std::string> values;
+
+    bool is_given() const { return option != nullptr && option->count() > 0; }
   };
 
-  void bind(const Parameter& parameter) {
+  /// An argument in capitals: CLI11 from 2.4 on takes an argument `b` and an option `-b` for the same.
+  void bind(Bound& entry) {
+    const auto& parameter = *entry.parameter;
     const auto names = parameter.short_name.empty()
-                           ? std::string(parameter.name)
+                           ? as_in_help(parameter)
                            : fmt::format("{},{}", parameter.short_name, parameter.name);
-    CLI::Option* option = nullptr;
-    if (parameter.kind == Kind::flag)
-      option = app_.add_flag(names);
-    else
-      option =
-          app_.add_option(names)
-              ->expected(1, parameter.many ? CLI::detail::expected_max_vector_size : 1)
-              ->multi_option_policy(parameter.many || parameter.repeats ? CLI::MultiOptionPolicy::TakeAll
-                                                                        : CLI::MultiOptionPolicy::TakeLast)
-              ->allow_extra_args(parameter.many);
-    bound_.push_back({&parameter, option, {}});
+    if (parameter.kind == Kind::flag) {
+      entry.option = app_.add_flag(names);
+      return;
+    }
+    entry.option =
+        app_.add_option(names)
+            ->expected(1, parameter.many ? CLI::detail::expected_max_vector_size : 1)
+            ->multi_option_policy(parameter.many || parameter.repeats ? CLI::MultiOptionPolicy::TakeAll
+                                                                      : CLI::MultiOptionPolicy::TakeLast)
+            ->allow_extra_args(parameter.many);
+  }
+
+  void bind_those_named_in(const std::vector<std::string>& words) {
+    for (auto& entry : bound_)
+      if (entry.option == nullptr &&
+          std::ranges::any_of(words, [&](const auto& word) { return can_name(word, *entry.parameter); }))
+        bind(entry);
   }
 
   Result<void> take_words(std::vector<std::string> words) {
     app_.clear();
     for (auto& entry : bound_) entry.values.clear();
+    bind_those_named_in(words);
     if (const auto whole = each_has_its_value(words); !whole) return whole;
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back.
     try {
@@ -126,6 +149,7 @@ class LineParser {
   /// Refuses an option that is given twice with two values.
   Result<void> each_is_said_once() const {
     for (const auto& [parameter, option, values] : bound_) {
+      if (option == nullptr) continue;
       const auto& given = option->results();
       const bool every = parameter->kind == Kind::flag || parameter->many || parameter->repeats;
       if (every || given.empty() || std::ranges::count(given, given.front()) == std::ssize(given)) continue;
@@ -169,7 +193,7 @@ class LineParser {
     if (!take_words(words)) return 0;
     std::size_t room = 0;
     for (const auto& entry : bound_) {
-      if (entry.parameter->name.starts_with("-")) continue;
+      if (is_option(*entry.parameter)) continue;
       if (entry.parameter->many) return std::numeric_limits<std::size_t>::max();
       room += entry.values.empty() ? 1U : 0U;
     }
@@ -179,7 +203,7 @@ class LineParser {
   /// The words as they were given: what CLI11 makes of them reads `{}` as nothing.
   void take_results() {
     for (auto& entry : bound_) {
-      if (entry.parameter->kind == Kind::flag || entry.option->count() == 0) continue;
+      if (entry.parameter->kind == Kind::flag || !entry.is_given()) continue;
       const auto& all = entry.option->results();
       const bool every = entry.parameter->many || entry.parameter->repeats;
       entry.values.assign(every ? all.begin() : all.end() - 1, all.end());
@@ -189,7 +213,7 @@ class LineParser {
   /// Gives the word to the first argument that still takes one.
   bool take_argument(const std::string& word) {
     for (auto& entry : bound_) {
-      if (entry.parameter->name.starts_with("-")) continue;
+      if (is_option(*entry.parameter)) continue;
       if (!entry.values.empty() && !entry.parameter->many) continue;
       entry.values.push_back(word);
       return true;
@@ -201,7 +225,7 @@ class LineParser {
     command::Arguments out;
     for (const auto& entry : bound_) {
       const auto& parameter = *entry.parameter;
-      if (entry.values.empty() && entry.option->count() == 0) {
+      if (entry.values.empty() && !entry.is_given()) {
         if (parameter.required)
           return fail(Errc::usage, fmt::format("{}: {} is missing", command_->path, as_in_help(parameter)),
                       fmt::format("{}: {}; {}", as_in_help(parameter), parameter.help, help_hint()));
@@ -233,7 +257,7 @@ class LineParser {
     if (word.size() < 2 || word.front() != '-') return one_too_many(word);
     std::vector<std::string> known;
     for (const auto& entry : bound_)
-      if (entry.parameter->name.starts_with("-")) known.emplace_back(entry.parameter->name);
+      if (is_option(*entry.parameter)) known.emplace_back(entry.parameter->name);
     auto hint = did_you_mean(word, known);
     return fail(Errc::usage, fmt::format("{}: there is no option '{}'", command_->path, word),
                 hint.empty() ? help_hint() : hint);

@@ -13,7 +13,7 @@
 // library is built with exceptions.
 #define TOML_HEADER_ONLY 0
 #define TOML_EXCEPTIONS 0
-#define TOML_ENABLE_FORMATTERS 0  // Nothing is written; they want log10() of libm.
+#define TOML_ENABLE_FORMATTERS 0  // Nothing is written.
 // toml++ 3.3 asserts (or, without assertions, assumes) of a key what its input need not hold: "[=]". The code
 // behind it reports the error in order.
 #undef NDEBUG

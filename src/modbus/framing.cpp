@@ -1,6 +1,7 @@
 #include "modbus/framing.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <string_view>
 #include <utility>

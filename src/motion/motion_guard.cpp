@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <tuple>
 
 #include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"

@@ -1,12 +1,9 @@
 #include "od/text_encoding.hpp"
 
-#include <iconv.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
 
 #include "base/utf8.hpp"
+#include "od/code_page.hpp"
 #include "od/text_bytes.hpp"
 
 namespace servoctl::od {
@@ -30,27 +27,55 @@ void locate_first_high(std::string_view bytes, DecodedText& out) {
                                           (line_start == std::string_view::npos ? 0 : line_start + 1) + 1);
 }
 
-/// iconv over all of it; a byte (UTF-16: a pair) it refuses goes to `refused`, which says whether to go on.
-/// Text that could be read goes to `converted`.
+constexpr std::size_t unit_of(TextEncoding encoding) {
+  return encoding == TextEncoding::utf16le || encoding == TextEncoding::utf16be ? 2 : 1;
+}
+
+/// The first character of UTF-16; none where a surrogate has no other half.
+CodePoint first_of_utf16(std::string_view bytes, bool little) {
+  constexpr std::size_t kUnit = 2;
+  const auto unit = [&](std::size_t i) -> char32_t {
+    return little ? at(bytes, i) | at(bytes, i + 1) << 8U : at(bytes, i) << 8U | at(bytes, i + 1);
+  };
+  if (bytes.size() < kUnit) return {};
+  const auto first = unit(0);
+  if (first < 0xD800 || first > 0xDFFF) return {first, kUnit};
+  if (first > 0xDBFF || bytes.size() < 2 * kUnit) return {};
+  const auto second = unit(kUnit);
+  if (second < 0xDC00 || second > 0xDFFF) return {};
+  return {0x10000 + ((first - 0xD800) << 10U) + (second - 0xDC00), 2 * kUnit};
+}
+
+CodePoint first_character(std::string_view bytes, TextEncoding encoding, const CodePage& page) {
+  if (encoding == TextEncoding::utf8) return decode_utf8(bytes);
+  if (unit_of(encoding) == 2) return first_of_utf16(bytes, encoding == TextEncoding::utf16le);
+  return page.first(bytes);
+}
+
+/// All of it; a byte (UTF-16: a pair) that means nothing goes to `refused`, which says whether to go on. Text
+/// that could be read goes to `converted`.
 template <class Converted, class Refused>
 void convert(std::string_view bytes, TextEncoding encoding, Converted converted, Refused refused) {
-  const iconv_t converter = iconv_open("UTF-8", name(encoding).data());
-  const std::size_t unit = encoding == TextEncoding::utf16le || encoding == TextEncoding::utf16be ? 2 : 1;
-  auto* from = const_cast<char*>(bytes.data());  // NOLINT: iconv does not write through it.
-  std::size_t left = bytes.size();
-  std::array<char, kSample> chunk{};
-  while (left > 0) {
-    auto* to = chunk.data();
-    std::size_t room = chunk.size();
-    const auto done = iconv(converter, &from, &left, &to, &room);
-    converted(std::string_view(chunk.data(), chunk.size() - room));
-    if (done != static_cast<std::size_t>(-1) || errno == E2BIG) continue;
-    const auto bad = std::min(unit, left);
-    if (!refused(std::string_view(from, bad))) break;
-    from += bad;
-    left -= bad;
+  const std::size_t unit = unit_of(encoding);
+  const auto& page = CodePage::of(encoding);
+  std::string chunk;
+  while (!bytes.empty()) {
+    const auto ascii = unit == 1 ? next_high(bytes, 0) : 0;
+    converted(bytes.substr(0, ascii));
+    bytes.remove_prefix(ascii);
+    if (bytes.empty()) break;
+    const auto character = first_character(bytes, encoding, page);
+    if (character.value) {
+      chunk.clear();
+      append_utf8(*character.value, chunk);
+      converted(chunk);
+      bytes.remove_prefix(character.size);
+    } else {
+      const auto bad = bytes.substr(0, unit);
+      if (!refused(bad)) return;
+      bytes.remove_prefix(bad.size());
+    }
   }
-  iconv_close(converter);
 }
 
 /// What cannot be read is written out, so that no byte is lost.

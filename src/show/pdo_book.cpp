@@ -1,6 +1,7 @@
 #include "show/pdo_book.hpp"
 
 #include <fmt/format.h>
+#include <iterator>
 #include <utility>
 
 #include "base/number.hpp"

@@ -2,6 +2,7 @@
 
 #include <rapidcheck/gtest.h>
 #include <filesystem>
+#include <limits>
 
 #include "base/bytes.hpp"
 #include "base/csv.hpp"

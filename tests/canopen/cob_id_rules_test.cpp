@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ios>
+
 namespace servoctl::canopen {
 namespace {
 

@@ -1,5 +1,8 @@
 #include "canopen/emergency.hpp"
 
+#include <ios>
+#include <vector>
+
 #include "transcript.hpp"
 
 namespace servoctl::canopen {

@@ -1,6 +1,8 @@
 // NMT, boot-up and heartbeat: the frames.
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "canopen/nmt.hpp"
 #include "transcript.hpp"
 

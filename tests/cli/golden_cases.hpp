@@ -1,7 +1,9 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <unistd.h>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -74,6 +76,13 @@ inline std::vector<GoldenCase> golden_cases() {
     c.lines.push_back(rest);
     out.push_back(std::move(c));
   }
+  return out;
+}
+
+/// The name of the case as part of that of its test.
+inline std::string golden_test_name(const testing::TestParamInfo<GoldenCase>& info) {
+  std::string out = info.param.name;
+  std::ranges::replace(out, '-', '_');
   return out;
 }
 

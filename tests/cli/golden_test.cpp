@@ -43,13 +43,7 @@ TEST_P(Golden, SaysWhatItSaidBefore) {
   EXPECT_EQ(slurp(path), said) << "`./dev golden` writes " << path << " anew";
 }
 
-INSTANTIATE_TEST_SUITE_P(Cases, Golden, testing::ValuesIn(golden_cases()),
-                         [](const testing::TestParamInfo<GoldenCase>& c_info) {
-                           std::string name = c_info.param.name;
-                           for (auto& c : name)
-                             if (c == '-') c = '_';
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Cases, Golden, testing::ValuesIn(golden_cases()), golden_test_name);
 
 TEST(GoldenCases, EveryFileBelongsToACase) {
   const auto cases = golden_cases();

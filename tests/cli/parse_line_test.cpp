@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <span>
+#include <string>
 #include <thread>
 
 #include "base/text.hpp"
@@ -208,6 +210,26 @@ std::vector<Words> lines_of(const command::Command& command) {
     out.back().insert(out.back().end(), more.begin(), more.end());
   }
   return out;
+}
+
+/// CLI11 throws where two names of a command are the same to it.
+TEST(ParseLine, KnowsEveryOptionOfEveryCommandAtOnce) {
+  for (const auto* command : command::registry()) {
+    Words words;
+    for (const auto word : split(command->path, ' ')) words.emplace_back(word);
+    const auto name_all = [&](std::span<const command::Parameter> parameters) {
+      for (const auto& parameter : parameters) {
+        if (!parameter.name.starts_with("-") || std::ranges::count(words, parameter.name) > 0) continue;
+        words.emplace_back(parameter.name);
+        if (parameter.kind != command::Kind::flag)
+          words.emplace_back(parameter.kind == command::Kind::choice ? parameter.choices.front() : "1");
+      }
+    };
+    name_all(command->parameters);
+    name_all(command::global_options());
+    const auto line = parse_line(words);
+    EXPECT_TRUE(line || line.error().message.ends_with(" is missing")) << line.error().message;
+  }
 }
 
 TEST(ParseLine, ReadsEveryLineAsIfItWereTheFirst) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ios>
+
 namespace servoctl::drive {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <ios>
 #include <set>
 
 #include "base/number.hpp"

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 #include <filesystem>
+#include <ostream>
 #include <set>
 
 #include "base/csv.hpp"

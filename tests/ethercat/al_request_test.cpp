@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "ethercat/registers.hpp"
 #include "hex.hpp"
 

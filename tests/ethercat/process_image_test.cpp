@@ -1,5 +1,7 @@
 #include "process_image_fixture.hpp"
 
+#include <algorithm>
+
 namespace servoctl::ethercat {
 namespace {
 

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "sii_images.hpp"
 
 namespace servoctl::ethercat {

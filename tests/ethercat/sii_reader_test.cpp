@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "ethercat/registers.hpp"
 #include "ethercat/sii_image.hpp"
 #include "sii_images.hpp"

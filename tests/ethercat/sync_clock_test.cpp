@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "ethercat/registers.hpp"
 
 namespace servoctl::ethercat {

@@ -1,5 +1,7 @@
 // The master of LSS against slaves that answer anything: any request, one after the other.
 #include "canopen/lss_master.hpp"
+
+#include <algorithm>
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace servoctl;

@@ -1,5 +1,7 @@
 // Bytes of a line, as answers to somebody who asks and as requests to a simulated drive, in each framing.
 #include "modbus/client.hpp"
+
+#include <algorithm>
 #include "tests/fuzz/fuzz.hpp"
 
 namespace {

@@ -2,6 +2,8 @@
 // is a frame or a wait.
 #include "canopen/sdo_client.hpp"
 
+#include <algorithm>
+
 #include "canopen/sdo_frame.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

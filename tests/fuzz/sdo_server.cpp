@@ -1,6 +1,8 @@
 // An SDO server against a client that sends anything.
 #include "canopen/sdo_server.hpp"
 
+#include <algorithm>
+
 #include "canopen/sdo_frame.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -1,6 +1,9 @@
 // An adapter that says anything: lines are the same however they are cut, frames are frames of the bus, and
 // opening it ends.
 #include "can/slcan_codec.hpp"
+
+#include <algorithm>
+#include <utility>
 #include "can/slcan_opening.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -3,6 +3,7 @@
 #include "can/socketcand_codec.hpp"
 #include "can/socketcand_dialogue.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "tests/fuzz/fuzz.hpp"

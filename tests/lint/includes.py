@@ -4,7 +4,9 @@
   includes.py ROOT
 
 Where headers are precompiled, or several files compiled as one, a file is built with what others included, and fails alone. Checked are
-names with their namespace, `settings::refuse_energised`, and classes of the file's own namespace.
+names with their namespace, `settings::refuse_energised`, and classes of the file's own namespace. Names of `std::` need their header
+(std_headers.txt) in the file or in one of ours that it includes: which header of the library includes which others changes with each
+version of it.
 """
 import functools
 import os
@@ -20,6 +22,8 @@ CLASS = re.compile(r'^(?:template <[^>]*>\s*)?(?:struct|class|enum class|enum) (
 ALIAS = re.compile(r'^using (\w+) =', re.M)
 VALUE = re.compile(r'^(?:inline |extern )?(?:constexpr|const) [^;=(]*?\b(k[A-Z]\w*)', re.M)
 FUNCTION = re.compile(r'^(?:template <[^>]*>\s*)?[A-Za-z_:<][\w:<>,&* ]*[ &*>](\w+)\(', re.M)
+SYSTEM_INCLUDE = re.compile(r'^#include <([^>]+)>', re.M)
+STANDARD = re.compile(r'\bstd::(?:ranges::(?=\w))?(\w+)')
 INNER = re.compile(r'\b(?:enum class|enum|struct|class|using) (\w+)')
 QUALIFIED = re.compile(r'(?<![\w:])(?:\w+::)*?(\w+)::(\w+)\b')
 PLAIN_CLASS = re.compile(r'(?<![\w:.>])([A-Z][a-z]\w+)\b')
@@ -28,6 +32,19 @@ PLAIN_CLASS = re.compile(r'(?<![\w:.>])([A-Z][a-z]\w+)\b')
 def read(path):
     with open(path, encoding='utf-8') as file:
         return file.read()
+
+
+def standard_headers():
+    """The headers that have a name of namespace std, any of which will do."""
+    out, headers = {}, ()
+    for line in read(os.path.join(os.path.dirname(os.path.abspath(__file__)), 'std_headers.txt')).splitlines():
+        if line.startswith('#'):
+            continue
+        if not line.startswith(' '):
+            left, line = line.split(':')
+            headers = left.split()
+        out.update({name: headers for name in line.split()})
+    return out
 
 
 class Tree:
@@ -43,6 +60,8 @@ class Tree:
         self.includes = {path: self.included(path) for path in self.texts}
         self.code = {path: STRING.sub('""', COMMENT.sub('', text)) for path, text in self.texts.items()}
         self.inner = {path: set(INNER.findall(code)) for path, code in self.code.items()}
+        self.standard = standard_headers()
+        self.system = {path: set(SYSTEM_INCLUDE.findall(text)) for path, text in self.texts.items()}
         self.declared = {}  # (namespace, name): the headers
         for path, code in self.code.items():
             if path.endswith('.hpp'):
@@ -88,6 +107,12 @@ class Tree:
             headers = self.declared.get((scope, name), set())
             if headers and name not in own and not headers & self.reached(path):
                 yield f'{scope}::{name}', sorted(headers)[0]
+        system = set().union(*(self.system[each] for each in self.reached(path)))
+        for name in sorted(set(STANDARD.findall(code))):
+            if name not in self.standard:
+                yield f'std::{name}', 'no header that std_headers.txt names for it'
+            elif system.isdisjoint(self.standard[name]):
+                yield f'std::{name}', f'<{self.standard[name][0]}>'
         if 'fmt::' in code and not any('#include <fmt/' in self.texts[each] for each in self.reached(path)):
             yield 'fmt', '<fmt/format.h>'
 

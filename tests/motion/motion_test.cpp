@@ -2,6 +2,9 @@
 // with every object as it was.
 #include "motion_support.hpp"
 
+#include <cstdlib>
+#include <ostream>
+
 namespace servoctl::motion {
 namespace {
 

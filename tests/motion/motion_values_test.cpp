@@ -1,6 +1,8 @@
 // What is asked for is what is done, or it is refused or told: rounding, limits, and what was measured.
 #include "motion_support.hpp"
 
+#include <ostream>
+
 namespace servoctl::motion {
 namespace {
 

@@ -1,4 +1,5 @@
 // What a hostile or broken file may cost: little time, a report of bounded length.
+#include <algorithm>
 #include <chrono>
 #include <random>
 

@@ -1,5 +1,7 @@
 // What other people's files have been seen to hold: taken where the meaning is plain, told either way.
 #include "od/dcf.hpp"
+
+#include <algorithm>
 #include "tests/od/eds_support.hpp"
 
 namespace servoctl::od {

@@ -1,6 +1,8 @@
 // How sections become objects.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "tests/od/eds_support.hpp"
 
 namespace servoctl::od {

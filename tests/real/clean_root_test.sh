@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the .deb in a minimal Debian of the release that this machine runs, made by debootstrap, and uses it there: nothing of it
-# was installed for servoctl but man. The root is made once for a build folder and unpacked for each run.
+# was installed for servoctl but man and what the .deb depends on. The root is made once for a build folder and unpacked for each run.
 # Exits with 125 for who is not root, where no mount namespace is to be had, or no network the first time.
 # usage: clean_root_test.sh SERVOCTL BUILD_DIR
 set -euo pipefail
@@ -35,6 +35,17 @@ inside() { env -i LC_ALL=C PATH=/usr/bin:/usr/sbin DEBIAN_FRONTEND=noninteractiv
 if inside sh -c 'command -v servoctl || find / -xdev -name "*servoctl*" | grep .'; then echo "the root is not clean"; exit 1; fi
 
 cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/packed" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+# What it depends on and a minimal Debian has not, from the same place as the machine's own packages.
+for library in $(dpkg-deb -f "$work"/packed/*.deb Depends | tr ',' '\n' | sed 's/ *(.*//; s/ //g'); do
+  if inside dpkg-query -W -f='${db:Status-Status}' "$library" | grep -qx installed; then continue; fi
+  file=$(find "$build/clean-root" -name "${library}_*.deb" | head -1)
+  if [ -z "$file" ]; then
+    (cd "$build/clean-root" && apt-get download "$library") >"$work/log" 2>&1 || { tail -5 "$work/log"; echo "$library cannot be downloaded"; exit 125; }
+    file=$(find "$build/clean-root" -name "${library}_*.deb" | head -1)
+  fi
+  cp "$file" "$root/library.deb"
+  inside dpkg -i library.deb >"$work/log" || { cat "$work/log"; echo "$library cannot be installed"; exit 1; }
+done
 # An older package, with a file that the present one has no more, is what most people have.
 dpkg-deb -R "$work"/packed/*.deb "$work/older"
 sed -i 's/^Version: .*/Version: 0.0.1-1/' "$work/older/DEBIAN/control"

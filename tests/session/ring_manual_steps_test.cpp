@@ -1,6 +1,8 @@
 // The sequences that the manual prints for each mode (tests/vectors/sv2-states.csv), over EtherCAT: outputs
 // and statusword by process data, the rest by mailbox.
 #include "drive/standard_objects.hpp"
+
+#include <ios>
 #include "ethercat_world.hpp"
 #include "tests/sim/manual_rows.hpp"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <initializer_list>
@@ -19,7 +20,8 @@ class ScriptedBus final : public can::Bus {
   /// Called for each frame sent; answers with arrive().
   std::function<void(ScriptedBus&, const std::string& sent)> on_send;
   std::vector<std::string> sent;
-  Duration failing{};  ///< What is sent while the bus is lost fails after this time, as where a queue is full.
+  Duration
+      failing{};  ///< What is sent while the bus is lost fails after this time, as where a queue is full.
 
   /// The frame is received after `delay`.
   void arrive(std::string_view frame, Duration delay = std::chrono::milliseconds(1)) {

@@ -2,6 +2,8 @@
 // before, and the interface taken along when all have it.
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 #include "tests/settings/address_plan_world.hpp"
 #include "tests/settings/bitrate_cell.hpp"
 

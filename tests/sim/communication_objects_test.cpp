@@ -1,6 +1,7 @@
 // Communication objects of simulated drives, with frames and abort codes as CiA 301 prints them (7.5.2).
 #include "sim_support.hpp"
 
+#include <cstdio>
 #include <tuple>
 
 namespace servoctl::sim {

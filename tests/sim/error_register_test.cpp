@@ -1,5 +1,8 @@
 // Error register, error field and emergencies of simulated drives (CiA 301, 7.2.7, 7.5.2.2, 7.5.2.4).
 #include "canopen/nmt.hpp"
+
+#include <cstdio>
+#include <ios>
 #include "sim/error_log.hpp"
 #include "sim_support.hpp"
 

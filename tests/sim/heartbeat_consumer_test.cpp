@@ -1,5 +1,7 @@
 #include "sim/heartbeat_consumer.hpp"
 
+#include <cstdio>
+
 #include "canopen/nmt.hpp"
 #include "sim_support.hpp"
 

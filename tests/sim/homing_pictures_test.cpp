@@ -1,6 +1,8 @@
 // Where each homing method of CiA 402-2 ends, from every side the standard draws.
 #include "homing_support.hpp"
 
+#include <ios>
+
 namespace servoctl::sim {
 namespace {
 

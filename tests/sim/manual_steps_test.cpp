@@ -1,6 +1,8 @@
 // The sequences the manuals print for each mode: controlword in, statusword reached, one after the other on
 // the same drive (tests/vectors/*-states.csv).
 #include "manual_rows.hpp"
+
+#include <ios>
 #include "sim_support.hpp"
 
 namespace servoctl::sim {

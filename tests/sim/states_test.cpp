@@ -1,4 +1,5 @@
 // The step tables of the manual: controlword in, statusword out (tests/vectors/gsd600-states.csv).
+#include <cstdio>
 #include <map>
 
 #include "base/csv.hpp"

@@ -1,6 +1,7 @@
 // The tables of transitions the manuals print: controlword in, statusword out, for every family
 // (tests/vectors/*-states.csv).
 #include <algorithm>
+#include <cstdio>
 
 #include "base/csv.hpp"
 #include "base/file.hpp"

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "cli/batch/result_path.hpp"

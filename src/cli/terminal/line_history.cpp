@@ -1,5 +1,7 @@
 #include "cli/terminal/line_history.hpp"
 
+#include <algorithm>
+
 #include "base/file.hpp"
 #include "base/folded.hpp"
 #include "base/found_file.hpp"
