@@ -238,7 +238,6 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
   auto value = result ? *result : Value();
   const auto node = errors.empty() ? std::nullopt : errors.front().node;
-  auto axis = std::string(node ? run.settings.names.of(*node) : std::string_view());
   const auto* const of_family = run.line.chinese_names();
   if (run.settings.shows_chinese()) put_into_chinese(run.context, of_family);
   name_axes_in(run.settings.names, run.context, value);
@@ -251,7 +250,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .told = run.settings.shows_chinese(),
           .leaves_power = leaves_power,
           .abort_words = std::move(words),
-          .axis = std::move(axis),
+          .axis = std::string(node ? run.settings.names.of(*node) : std::string_view()),
           .names = of_family != nullptr ? *of_family : report::Names()};
 }
 

@@ -2,6 +2,7 @@
 // no value is an older one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <utility>
 
