@@ -102,8 +102,13 @@ void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
   }
   const bool again = std::exchange(last_answer_, frame) == frame;
   // Toggle bits alternate: what is equal is one answer that came twice.
-  if (again && (state_ == State::upload_segment || state_ == State::download_segment))
-    return core_.open().note_copy();
+  if (state_ == State::upload_segment || state_ == State::download_segment) {
+    if (again) {
+      core_.note(frame.data[0], object_, 0);
+      return core_.open().note_copy();
+    }
+    core_.forget_noted();
+  }
   if (!is_anonymous() && !is_first_answer(frame, now)) return;
   if (frame.data[0] == kSdoAbortCommand) return on_abort(frame, now);
   switch (state_) {

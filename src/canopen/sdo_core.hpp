@@ -46,6 +46,7 @@ class SdoCore : public TransferCore<Result<Bytes>> {
   void note(std::uint8_t command, ObjectAddress object, std::uint32_t code) {
     heard_ = Heard{command, object, code};
   }
+  void forget_noted() { heard_.reset(); }
   /// Whether an answer to a read of the object can only be for the present transfer.
   bool is_clear(ObjectAddress object) const;
   bool awaits_read(ObjectAddress object) const;

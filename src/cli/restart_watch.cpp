@@ -108,7 +108,10 @@ Result<void> RestartWatch::keep_node(std::uint8_t node) {
   const show::OwedRestartFile file(folder_, session_->url(), node);
   if (waited && may_be_over(node)) {
     const session::Deaf deaf(*session_);
-    if (show::is_over(*session_, node, record(node, owed_.kept_of(node).value_or(heard_[node])))) {
+    const auto next = show::next_node_id(owed_.values(node, starts(node)), owed_.node_id_of(node));
+    const bool started = next && starts(*next).restarts != restarts_[*next];
+    const auto kept = record(node, owed_.kept_of(node).value_or(heard_[node]));
+    if (show::owing(*session_, node, kept, started) == show::Owing::over) {
       owed_.forget(node);
       bitrates_.erase(node);
       in_file_.erase(node);

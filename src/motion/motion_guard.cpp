@@ -188,6 +188,14 @@ Result<void> MotionGuard::enable() {
     powered_ = true;
     return fail(enabled_by_others(node_, *state));
   }
+  if (const auto foreign = foreign_command())
+    return fail(Errc::negative,
+                foreign->by_pdo()
+                    ? fmt::format("another master sends PDOs with object {}: the drive was not enabled",
+                                  to_string(foreign->object))
+                    : fmt::format("another master has written object {}: the drive was not enabled",
+                                  to_string(foreign->object)),
+                std::string(kTwoMasters));
   energised_ = true;
   if (rehearsal_ == nullptr) return power_.reach(DriveState::operation_enabled);
   const auto path = power_.path_to(*state, DriveState::operation_enabled);

@@ -47,7 +47,7 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
                     ? fmt::format("another master sent a PDO with object {} while moving",
                                   to_string(foreign->object))
                     : fmt::format("another master wrote object {} while moving", to_string(foreign->object)),
-                "two masters command the drive: stop the other one"));
+                std::string(MotionGuard::kTwoMasters)));
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));
     const auto enough = done(*sample);

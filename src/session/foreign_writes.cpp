@@ -25,9 +25,8 @@ std::set<std::uint16_t> rpdo_numbers(const drive::Profile& profile) {
   return out;
 }
 
-bool is_refusal(Errc code) { return code == Errc::sdo_abort || code == Errc::refused; }
-
-/// Reads these objects of one node; what it refuses is left out.
+/// Reads these objects of one node; what it refuses, or does not answer, is left out: a drive without RPDOs
+/// may do either.
 Result<void> read_into(Values& values, Session& session, std::uint8_t node,
                        const std::vector<ObjectAddress>& objects) {
   std::vector<SdoRequest> requests;
@@ -36,7 +35,7 @@ Result<void> read_into(Values& values, Session& session, std::uint8_t node,
   for (std::size_t i = 0; i < answers.size(); ++i) {
     if (answers[i])
       values[objects[i]] = *answers[i];
-    else if (!is_refusal(answers[i].error().code))
+    else if (const auto code = answers[i].error().code; code == Errc::bus || code == Errc::interrupted)
       return fail(answers[i].error());
   }
   return {};

@@ -80,7 +80,8 @@ void OwedRestarts::learn(std::uint8_t node, const drive::Profile& profile, bool 
     if (restarted || !waits(known, written.object)) continue;
     settle(known, starts);
     take(known, written.object, written.stored, true);
-    if (!known.values.empty()) known.values.back().kept = known.values.back().kept || written.kept;
+    const auto owed = std::ranges::find(known.values, written.object, &OwedValue::object);
+    if (owed != known.values.end()) owed->kept = owed->kept || written.kept;
   }
 }
 

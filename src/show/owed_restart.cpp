@@ -148,36 +148,35 @@ bool is_other(const session::Identity& kept, const session::Identity& now) {
   return !other_kind(kept, now).empty() || (kept.serial && now.serial && *kept.serial != *now.serial);
 }
 
-bool says_who(const session::Identity& identity) { return identity.device_type || identity.vendor_id; }
-
-/// Whether the drive of the record answers at the node-ID that waited. Of drives without serial numbers only
-/// the kind is known.
-bool answers_at_next(session::Session& session, std::uint8_t node, const OwedRestart& owed) {
-  const auto next = next_node_id(owed.values, owed.node_id);
-  if (!next || *next == node || (!says_who(owed.identity) && session.modbus() == nullptr)) return false;
-  const auto there = session::read_identity(session, *next);
-  return there && !is_other(owed.identity, *there);
+/// Whether they are one drive for certain. Serial numbers of 0 say nothing.
+bool is_same(const session::Identity& kept, const session::Identity& now) {
+  return kept.serial.value_or(0) != 0 && kept.serial == now.serial && other_kind(kept, now).empty();
 }
 
-/// Whether a drive at this node that cannot be told apart from the one of the record has another node-ID in
-/// its memory than the one that waits.
-bool lacks_node_id(session::Session& session, std::uint8_t node, const OwedRestart& owed) {
-  if (owed.identity.serial.value_or(0) != 0 || !next_node_id(owed.values, owed.node_id)) return false;
-  const auto waiting = std::ranges::find(owed.values, *owed.node_id, &OwedValue::object);
-  const auto holds = session.upload(node, *owed.node_id);
-  return holds && *holds != waiting->stored;
+/// Whether the drive of the record answers at the node-ID that waited: by its serial number, or one of its
+/// kind has started there.
+bool answers_at_next(session::Session& session, std::uint8_t node, const OwedRestart& owed,
+                     bool has_started_there) {
+  const auto next = next_node_id(owed.values, owed.node_id);
+  if (!next || *next == node) return false;
+  const auto there = session::read_identity(session, *next);
+  if (!there) return false;
+  return is_same(owed.identity, *there) || (has_started_there && !is_other(owed.identity, *there));
 }
 
 }  // namespace
 
-bool is_over(session::Session& session, std::uint8_t node, const OwedRestart& owed) {
+Owing owing(session::Session& session, std::uint8_t node, const OwedRestart& owed, bool has_started_at_next) {
   const session::OptionScope once(session, &session::Options::retries, 0U);
   const auto here = session::read_identity(session, node);
-  if (!here) return here.error().code == Errc::timeout && answers_at_next(session, node, owed);
-  if (says_who(owed.identity) && is_other(owed.identity, *here)) return true;
+  if (!here) {
+    const bool silent = here.error().code == Errc::timeout;
+    return silent && answers_at_next(session, node, owed, has_started_at_next) ? Owing::over : Owing::waits;
+  }
+  if (is_other(owed.identity, *here)) return Owing::of_another;
   const auto bitrate = owed.bus_bitrate ? session::bitrate_of(session.url()) : std::nullopt;
-  if (bitrate && *bitrate != *owed.bus_bitrate) return true;
-  return lacks_node_id(session, node, owed);
+  return bitrate && *bitrate != *owed.bus_bitrate && is_same(owed.identity, *here) ? Owing::over
+                                                                                   : Owing::waits;
 }
 
 OwedRestart owed_restart(session::Session& session, const fs::path& state_folder, std::uint8_t node) {
@@ -189,10 +188,9 @@ OwedRestart owed_restart(session::Session& session, const fs::path& state_folder
     return out;
   }
   if (!*kept) return {};
-  if (is_over(session, node, **kept)) {
-    file.remove();
-    return {};
-  }
+  const auto owing = show::owing(session, node, **kept);
+  if (owing == Owing::over) file.remove();
+  if (owing != Owing::waits) return {};
   // What it does not hold any more, a restart has taken, or somebody else.
   std::erase_if((*kept)->values, [&](const OwedValue& value) {
     const auto holds = session.upload(node, value.object);

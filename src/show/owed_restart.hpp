@@ -46,9 +46,16 @@ class OwedRestartFile {
 std::optional<std::uint8_t> next_node_id(const std::vector<session::OwedValue>& values,
                                          const std::optional<ObjectAddress>& node_id);
 
-/// Whether the drive has restarted since, or is no longer at this node, as far as it can be known: another
-/// drive is there, or it answers with the node-ID or at the bitrate that waited. Asks the drives.
-bool is_over(session::Session& session, std::uint8_t node, const OwedRestart& owed);
+enum class Owing : std::uint8_t {
+  waits,       ///< Nothing shows that the drive has restarted.
+  over,        ///< It answers with the node-ID or at the bitrate that waited.
+  of_another,  ///< The drive at this node is another one: its own may come back, and not have restarted.
+};
+
+/// Asks the drives. Over is what is proved: by equal serial numbers, or by a drive of the kind that was heard
+/// to start at the node-ID that waited while the old one is silent.
+Owing owing(session::Session& session, std::uint8_t node, const OwedRestart& owed,
+            bool has_started_at_next = false);
 
 /// What is stored in a node and comes into force with its next restart, where it is the drive that this is
 /// kept of: it is asked who it is only where something is kept. One that does not say is taken for it. What

@@ -73,6 +73,23 @@ TEST_P(ForeignPdo, ATargetTorqueEndsATorqueMotion) {
   expect_noticed(bench.torque({.torque = "1%", .length = 1s}), "0x6071:0");
 }
 
+/// They come before the drive is enabled, and while it is prepared.
+TEST_P(ForeignPdo, ATargetThatIsSentAllTheTimeKeepsTheDriveFromBeingEnabled) {
+  map(0x60FF, 32);
+  order(canopen::NmtCommand::start);
+  int enables = 0;
+  bench.bus->swallows = [&](const std::string& frame) {
+    if (frame.starts_with("601#")) bench.bus->injected.emplace_back("201#10270000");
+    enables += frame.starts_with("601#2B4060000F");
+    return false;
+  };
+  const auto done = bench.jog(jog_for("60rpm", 1s));
+  ASSERT_FALSE(done.outcome);
+  EXPECT_EQ(done.outcome.error().message,
+            "another master sends PDOs with object 0x60FF:0: the drive was not enabled");
+  EXPECT_EQ(enables, 0);
+}
+
 TEST_P(ForeignPdo, WhatIsMappedToNothingOfTheMotionEndsNone) {
   map(0x6081, 32);
   order(canopen::NmtCommand::start);
