@@ -120,14 +120,14 @@ def shape(name):
     commands = []
     for block in re.findall(r"^```console\n(.*?)^```", text, flags=re.S | re.M):
         commands += [re.split(r" [|;&] ?|[|]| \d?>", line)[0] for line in re.findall(r"^\$ (.*)$", block, flags=re.M)]
-    commands = [line for line in commands if not re.match(r"export SERVOCTL_LANG=|printf |echo ", line)]
+    commands = [line for line in commands if not re.match(r"export SERVOCTL_LANG=|printf |echo |servoctl param search ", line)]
     prose = re.sub(r"^```.*?^```", "", text, flags=re.S | re.M)
     prose = re.sub(r"<!-- commands: begin.*commands: end -->", "", prose, flags=re.S)
     return {
         "headings": [len(each) for each in re.findall(r"^(#+) ", prose, flags=re.M)],
         "commands": commands,
         "rows of tables": len(re.findall(r"^\|", prose, flags=re.M)),
-        "numbers": sorted(set(re.findall(r"(?<![\w#])[0-9A-F]*\d[0-9A-F]{2,}(?![0-9A-Za-z_])", re.sub(r"\]\([^)]*\)", "]", prose)))),
+        "numbers": sorted(set(re.findall(r"(?<![0-9A-Za-z_#])[0-9A-F]*\d[0-9A-F]{2,}(?![0-9A-Za-z_])", re.sub(r"\]\([^)]*\)", "]", prose)))),
     }
 
 
