@@ -134,6 +134,8 @@ def shape(name):
 def unlike(translation):
     """What a Chinese page shows otherwise than the English page that it translates."""
     name = translation.replace("docs/zh/", "docs/").replace(".zh.md", ".md")
+    if translation == "docs/zh/README.md":  # An index of its own: it has the pages that there are.
+        return ""
     if not os.path.exists(os.path.join(source, name)):
         return f"{translation}: there is no {name}"
     ours, theirs = shape(translation), shape(name)
