@@ -1,6 +1,6 @@
 cmake_minimum_required(VERSION 3.25)
 # Asks git for the version and writes it where it is used; a file that would stay the same is not touched.
-# usage: cmake -DSOURCE=DIR -DPROJECT=0.1.0 -DINTO=DIR -P version.cmake
+# usage: cmake -DSOURCE=DIR -DPROJECT=0.2.0 -DINTO=DIR -P version.cmake
 # src/base/version.hpp says what the versions look like.
 function(ask_git out)
   execute_process(COMMAND git -C ${SOURCE} ${ARGN} OUTPUT_VARIABLE answer ERROR_QUIET RESULT_VARIABLE failed OUTPUT_STRIP_TRAILING_WHITESPACE)

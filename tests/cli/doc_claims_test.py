@@ -72,7 +72,7 @@ with tempfile.TemporaryDirectory() as folder:
             problems.append(f"{page}: no longer says: {sentence}")
         elif problem := problem_of(sentence, proof, tests, folder):
             problems.append(f"{page}: {sentence}\n  {problem}")
-pages = [os.path.relpath(page, source) for page in glob.glob(os.path.join(source, "docs/*.md"))] + ["README.md"]
+pages = [os.path.relpath(page, source) for page in glob.glob(os.path.join(source, "docs/*.md"))] + ["README.md", "CONTRIBUTING.md"]
 for page in sorted(pages):
     for sentence in sentences(page):
         if CLAIM.search(sentence) and sentence not in listed.get(page, ()):

@@ -57,7 +57,7 @@ def spans(text):
 
 def told():
     """Every span between backticks, and where it stands."""
-    pages = glob.glob(os.path.join(source, "README*.md")) + glob.glob(os.path.join(source, "docs/*.md"))
+    pages = glob.glob(os.path.join(source, "README*.md")) + glob.glob(os.path.join(source, "docs/**/*.md"), recursive=True)
     for page in sorted(pages):
         if page.endswith("/json.md"):  # Rows of keys, made from the schemas.
             continue
