@@ -170,7 +170,8 @@ TEST_F(CanNetworkTest, SendsALastWordWithoutAnAnswer) {
 
 TEST_F(CanNetworkTest, HearsWhatAnotherMasterBeginsToWriteOnOneNode) {
   std::vector<ObjectAddress> written;
-  const ForeignWrites writes(*session, 5, [&](ObjectAddress object) { written.push_back(object); });
+  const ForeignWrites writes(*session, 5,
+                             [&](ObjectAddress object, ForeignWrites::Way) { written.push_back(object); });
   for (const auto* frame : {"605#2B40600006000000", "605#4041600000000000", "606#2B40600006000000",
                             "605#C2FF600100100000", "605#C1FF600100100000", "605#2B4060000600"})
     bus->arrive(frame, 1ms);
