@@ -1,7 +1,7 @@
 // CAN FD frames on the bus: they are counted, and no silence.
 #include <gtest/gtest.h>
 
-#include "report/json.hpp"
+#include "report/value.hpp"
 #include "tested_drive.hpp"
 
 namespace servoctl::commands {
