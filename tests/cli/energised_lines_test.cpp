@@ -197,30 +197,6 @@ TEST_F(EnergisedLines, WhatIsLeftEnergisedIsToldWhenTheLinesEnd) {
   EXPECT_FALSE(says("ENERGISED")) << "the last line told it: " << all();
 }
 
-TEST_F(EnergisedLines, ADriveThatCannotBeLetGoReachesTheExitCode) {
-  for (const int code : {0, 130, 5}) {
-    open("sim:gsd600@1?silent=2s", "gsd600");
-    ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
-    (void)run("watch statusword -n 1 --for 3s");
-    shell->let_go();
-    EXPECT_TRUE(says("NODE 1 MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY")) << all();
-    const auto end = shell->close(code);
-    EXPECT_TRUE(code == 5 ? end == 5 : end != 0 && end != 130) << code << " became " << end << all();
-  }
-}
-
-TEST_F(EnergisedLines, ADriveThatEndsInFaultInsteadOfObeyingReachesTheExitCode) {
-  for (const int code : {0, 130, 5}) {
-    open("coe:sim:sv2@1?lie=wkc,frozen-outputs&lie-after=100ms", "sv2");
-    ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
-    (void)run("watch statusword -n 1 --for 500ms");
-    shell->let_go();
-    EXPECT_TRUE(says("node 1: it had been enabled; it is de-energised now, but in fault")) << all();
-    EXPECT_FALSE(says("it has been stopped and disabled")) << all();
-    EXPECT_EQ(shell->close(code), code == 5 ? 5 : 1) << all();
-  }
-}
-
 TEST_F(EnergisedLines, ASignalBehindTheLastLineLeavesNothingEnergised) {
   ASSERT_EQ(run("enable -n 1 --yes"), 0) << all();
   looks_left = 0;
