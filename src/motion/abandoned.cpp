@@ -60,26 +60,25 @@ void stop_abandoned(show::Desk& desk, const std::set<std::uint8_t>& nodes) {
   auto& session = *desk.session;
   const auto hold = session.protect(session::Care::guarded);
   const session::Deaf deaf(session);
-  std::vector<PowerDownPlan> plans;
-  std::vector<std::uint8_t> stopped;
+  std::set<std::uint8_t> stopped;
   for (const auto node : nodes) {
     if (is_at_rest(session, node)) continue;
     desk.tell(fmt::format(
         "warning: node {} is energised or does not report its state, and the client that enabled it is gone: stopping it\n",
         node));
-    plans.emplace_back();
-    plans.back().node = node;
-    plans.back().aim = PowerAim::stop_and_disable;
-    stopped.push_back(node);
+    stopped.insert(node);
   }
-  const auto done = take_down(session, std::move(plans));
-  for (std::size_t i = 0; i < done.size(); ++i) {
-    if (done[i].outcome) {
-      desk.tell("notice: " + disabled_notice(stopped[i]) + "\n");
+  for (const auto& [node, done, in_fault] : de_energise(session, stopped)) {
+    if (in_fault) {
+      desk.errors.push_back(ended_in_fault(node));
       continue;
     }
-    auto error = done[i].outcome.error();
-    error.message = power_warning(stopped[i], error.message);
+    if (done) {
+      desk.tell("notice: " + disabled_notice(node) + "\n");
+      continue;
+    }
+    auto error = done.error();
+    error.message = power_warning(node, error.message);
     desk.errors.push_back(std::move(error));
   }
 }

@@ -34,6 +34,7 @@ void add_lie(WireFaults& faults, std::string_view word) {
   if (word == "abort-index") faults.abort_index = true;
   if (word == "short") faults.is_short = true;
   if (word == "unconfirmed") faults.unconfirmed = true;
+  if (word == "no-stop") faults.no_stop = true;
 }
 
 void AnswerWay::put(can::Frame answer, WireFaults& faults, TimePoint now) {

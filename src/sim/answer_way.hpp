@@ -23,11 +23,12 @@ struct WireFaults {
   bool abort_index = false;  ///< An abort names object 0000h:00h.
   bool is_short = false;     ///< SDO answers have 4 bytes.
   bool unconfirmed = false;  ///< Writes are done and not confirmed.
+  bool no_stop = false;      ///< While it is energised it aborts every write of its controlword.
 };
 
 /// The words of `lie=` on CAN.
-inline constexpr std::array<std::string_view, 6> kCanLies{"late",        "twice", "wrong-index",
-                                                          "abort-index", "short", "unconfirmed"};
+inline constexpr std::array<std::string_view, 7> kCanLies{
+    "late", "twice", "wrong-index", "abort-index", "short", "unconfirmed", "no-stop"};
 /// `word` is one of kCanLies.
 void add_lie(WireFaults& faults, std::string_view word);
 

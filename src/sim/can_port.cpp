@@ -6,6 +6,7 @@
 #include "canopen/cob_id.hpp"
 #include "canopen/cob_id_rules.hpp"
 #include "canopen/emergency.hpp"
+#include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
 #include "sim/communication_guard.hpp"
 #include "sim/pdo_guard.hpp"
@@ -144,6 +145,8 @@ std::optional<can::Frame> CanPort::take_frame() {
 }
 
 std::uint32_t CanPort::check_write(ObjectAddress object, ByteSpan data) const {
+  if (faults_.no_stop && object == objects::kControlword && drive::is_energised(model_->power_state()))
+    return canopen::sdo_abort::kDeviceState;
   if (const auto code = CommunicationGuard(values()).check(object, data); code != 0) return code;
   return PdoGuard(model_->profile(), values()).check(object, data, nmt_ == NmtState::operational);
 }
