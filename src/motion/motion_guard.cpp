@@ -186,6 +186,11 @@ Result<void> MotionGuard::enable() {
     powered_ = true;
     return fail(enabled_by_others(node_, *state));
   }
+  if (const auto object = foreign_command())
+    return fail(
+        Errc::negative,
+        fmt::format("another master has written object {}: the drive was not enabled", to_string(*object)),
+        std::string(kTwoMasters));
   energised_ = true;
   if (rehearsal_ == nullptr) return power_.reach(DriveState::operation_enabled);
   const auto path = power_.path_to(*state, DriveState::operation_enabled);

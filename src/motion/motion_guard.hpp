@@ -3,6 +3,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "motion/motion_units.hpp"
@@ -30,6 +31,8 @@ struct MotionEnd {
 /// interrupted.
 class MotionGuard {
  public:
+  static constexpr std::string_view kTwoMasters = "two masters command the drive: stop the other one";
+
   MotionGuard(session::Session& session, const MotionUnits& units, std::uint8_t node);
   MotionGuard(const MotionGuard&) = delete;
   MotionGuard& operator=(const MotionGuard&) = delete;
@@ -58,8 +61,8 @@ class MotionGuard {
   bool needs_process_data() const;
   /// Starts the node where the family, or the network, has its drives energised in Operational only.
   Result<void> start_node();
-  /// "Operation enabled", by the shortest legal way. Errc::refused when somebody else has enabled it: two
-  /// masters would command it.
+  /// "Operation enabled", by the shortest legal way. Errc::refused when somebody else has enabled it,
+  /// Errc::negative when foreign_command() knows of one: two masters would command it.
   Result<void> enable();
 
   /// Of what decides about the motion (6040h, 6060h and the targets), what another master has written since.

@@ -43,7 +43,7 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
     if (const auto object = guard_ ? guard_->foreign_command() : std::nullopt)
       return fail(error(Errc::negative,
                         fmt::format("another master wrote object {} while moving", to_string(*object)),
-                        "two masters command the drive: stop the other one"));
+                        std::string(MotionGuard::kTwoMasters)));
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));
     const auto enough = done(*sample);
