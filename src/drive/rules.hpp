@@ -233,8 +233,8 @@ struct FaultRules {
   std::vector<Setting> reset;  ///< What resets a fault beside the controlword.
   bool by_controlword = true;
   std::string alarm;  ///< Parameter or object that holds the panel's alarm number.
-  std::string
-      ramp;  ///< Object by whose ramp the reaction stops the motor; empty: it is de-energised at once.
+  /// Object by whose ramp the reaction stops the motor; empty: it is de-energised at once.
+  std::string ramp;
   std::string length_alarm;     ///< Panel text of the alarm a write of a wrong length raises.
   std::string mapping_alarm;    ///< … of mapping in Operational.
   std::string range_alarm;      ///< … of a value out of range.

@@ -36,9 +36,6 @@ constexpr std::array kShown{
     Shown{{0x6072, 0}, "max torque"},
 };
 
-/// What is said of bit 9 of the statusword.
-constexpr std::string_view kRemoteItem = "remote";
-
 /// The manual does not state the unit of everything.
 std::string value_text(const Physical& value) {
   return value.unit.empty() ? fmt::format("{} (unit not known)", number_text(value.value))
@@ -120,12 +117,13 @@ class Preflight {
   void add_remote(const Power& power) {
     constexpr std::string_view kLead = "statusword bit 9 (remote) is 0";
     const auto& source = request_.source;
+    names_source_ = source.has_value();
     const auto start = power.start_command();
     auto text = source ? fmt::format("{}: {}", kLead, source->cause())
                        : fmt::format("{}, the drive may not obey the bus: {}", kLead, kRemoteCauses);
     if (!source && !start.empty()) text += "; or it sets the bit in the state operational only";
     if (request_.ignores_remote) {
-      add(Weight::caution, kRemoteItem, std::move(text));
+      add(Weight::caution, "remote", std::move(text));
       return;
     }
     auto way = std::string("return control to the bus");
@@ -133,7 +131,7 @@ class Preflight {
       way = source->remedy(units_->profile(), node_);
     else if (!start.empty())
       way = fmt::format("`{}`, or {}", start, way);
-    items_.push_back({Weight::stop, std::string(kRemoteItem), std::move(text),
+    items_.push_back({Weight::stop, "remote", std::move(text),
                       fmt::format("{}; --ignore-remote goes on after a question", way)});
   }
 
@@ -196,10 +194,8 @@ class Preflight {
 
   /// What has to be set before the drive listens to CANopen.
   Result<void> look_at_needs() {
-    const bool is_said =
-        std::ranges::any_of(items_, [](const auto& item) { return item.what == kRemoteItem; });
     for (const auto& need : units_->profile().rules.nmt.needs) {
-      if (is_said && request_.source && request_.source->name == need.name) continue;
+      if (names_source_ && request_.source->name == need.name) continue;
       const auto now = setting_of(*session_, *units_, need.name, request_.owed.values);
       if (!now) return fail(now.error());
       const auto other = std::ranges::find_if(
@@ -247,6 +243,7 @@ class Preflight {
   bool chinese_;
   PreflightRequest request_;
   std::vector<PreflightItem> items_;
+  bool names_source_ = false;  ///< Why the drive does not obey was said with bit 9 of the statusword.
 };
 
 }  // namespace

@@ -121,6 +121,22 @@ TEST_F(MeasuredTruth, ADriveInFaultAtTheEndIsNotDone) {
   expect_ended(done, "fault");
 }
 
+TEST_F(MeasuredTruth, ADriveThatAnotherMasterCommandsIsNotEnabled) {
+  int enables = 0;
+  bench.bus->on_sent = [&](const can::Frame& frame) {
+    const auto text = can::to_string(frame);
+    if (text == "601#40FF600000000000") bench.bus->injected.emplace_back("601#23FF600010270000");
+    enables += text == "601#2B4060000F000000";
+  };
+  const auto done = bench.jog(jog_for("60rpm", 1s));
+  ASSERT_FALSE(done.outcome);
+  EXPECT_NE(done.outcome.error().message.find(
+                "another master has written object 0x60FF:0: the drive was not enabled"),
+            std::string::npos)
+      << done.outcome.error().message;
+  EXPECT_EQ(enables, 0);
+}
+
 TEST_F(MeasuredTruth, WhatAnotherMasterWritesEndsMovesAndTorques) {
   at_sample(5, [&] { bench.bus->injected.emplace_back("601#23FF600010270000"); });
   const auto moved = bench.move(move_to("5rev", "60rpm"));
