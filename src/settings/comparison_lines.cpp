@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 #include <set>
 
-#include "canopen/pdo.hpp"
+#include "base/pdo_index.hpp"
 #include "session/write_plan.hpp"
 #include "settings/backup_formats.hpp"
 #include "settings/comparison.hpp"
@@ -13,9 +13,9 @@ namespace {
 void add_cob_ids(const Side& a, session::Values& wanted) {
   session::Values own;
   for (const auto& [object, data] : wanted) {
-    const auto place = canopen::pdo_at(object.index);
+    const auto place = pdo_at(object.index);
     if (!place || a.values.at(object) == data) continue;
-    const ObjectAddress cob_id{canopen::Pdo{place->direction, place->number}.communication_index(), 1};
+    const ObjectAddress cob_id{index_of({place->direction, place->number, false}), 1};
     if (const auto ours = a.values.find(cob_id); ours != a.values.end()) own.emplace(*ours);
   }
   wanted.merge(own);
@@ -26,9 +26,9 @@ void add_cob_ids(const Side& a, session::Values& wanted) {
 std::vector<ObjectAddress> cob_ids_lacking(const drive::Profile& profile, const Side& side) {
   std::set<ObjectAddress> out;
   for (const auto& [object, data] : side.values) {
-    const auto place = canopen::pdo_at(object.index);
+    const auto place = pdo_at(object.index);
     if (!place) continue;
-    const ObjectAddress cob_id{canopen::Pdo{place->direction, place->number}.communication_index(), 1};
+    const ObjectAddress cob_id{index_of({place->direction, place->number, false}), 1};
     if (side.values.count(cob_id) == 0 && profile.dictionary.find(cob_id) != nullptr) out.insert(cob_id);
   }
   return {out.begin(), out.end()};
