@@ -293,21 +293,6 @@ TEST_F(OwedRestart, ANewNodeIdThatNobodyAnswersWithStillWaits) {
   EXPECT_TRUE(file.is_there()) << all();
 }
 
-/// Another drive of the kind, without a serial number, has come to the old node-ID.
-TEST_F(OwedRestart, ADriveThatLaterHasTheOldNodeIdOwesNothing) {
-  const show::OwedRestartFile file(folder / "state", "sim:gsd600@1", 1);
-  session::Identity drive;
-  drive.node = 1;
-  drive.device_type = 0x0002'0192;
-  ASSERT_TRUE(file.write({.identity = drive,
-                          .values = {{{0x2000, 0x32}, Bytes{1, 0}, Bytes{5, 0}, true},
-                                     {{0x2003, 2}, Bytes{0, 0}, Bytes{1, 0}, true}},
-                          .node_id = ObjectAddress{0x2000, 0x32}}));
-  begin();
-  EXPECT_FALSE(owes(kDrive)) << "its Pn0601 is 1 as delivered: " << all();
-  EXPECT_FALSE(file.is_there()) << all();
-}
-
 TEST_F(OwedRestart, InfoHasItAsAFieldAsStatusHas) {
   for (const auto& [set, place] :
        {std::pair{"param set Pn0601=0", "-n 1 -d gsd600 -b sim:gsd600@1"},
