@@ -223,7 +223,6 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   const bool is_lost = tell_lost_bus(run, met_loss);
   if (!is_lost) tell_energised(run);
   tell_second_node(run);
-  if (!is_lost) tell_contradicted(run);
   learn_from(run);
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
     run.context.notices.push_back(std::move(notice));

@@ -76,6 +76,7 @@ void Shell::judge_writes(Run& run) {
 
 /// Behind a line, whatever became of it.
 void Shell::learn_from(Run& run) {
+  tell_contradicted(run);
   if (run.context.errors.empty())
     remember_family(run);
   else

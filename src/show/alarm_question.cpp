@@ -42,7 +42,8 @@ Result<void> confirm_alarms(const Desk& desk, std::span<session::SdoRequest> req
 
 Result<void> confirm_unlisted(const Desk& desk, std::uint8_t node, std::span<const drive::Target> targets) {
   const auto* known = desk.session->wary_of(node);
-  if (known == nullptr) return {};
+  // A cabinet file says what its drives have, and nobody is there to be asked.
+  if (known == nullptr || desk.audience == nullptr) return {};
   std::string names;
   std::string_view alarm;
   for (const auto& target : targets) {

@@ -21,7 +21,7 @@ OPTIONAL = {
     "scan.schema.json#/anyOf/1/items/properties/bus": "where the line is for several buses: nothing else tells the rows apart",
     "lss-scan.schema.json#/anyOf/0/items/properties/bus": "where the line is for several buses: nothing else tells the rows apart",
     **{f"defs.schema.json#/$defs/{kind}/properties/restart_owed": "only where something waits for a restart"
-       for kind in ("status_can", "status_ring")},
+       for kind in ("status_can", "status_ring", "info_can", "info_ring", "info_line")},
     **{f"defs.schema.json#/$defs/{kind}/properties/other_axes": "only where the node has several axes"
        for kind in ("status_can", "status_ring")},
     "pdo-file.schema.json#/properties/family": "a person may leave it out of the file",
