@@ -52,6 +52,15 @@ Result<void> hear_owed_restarts(const Context& context) {
   return wait_for_boots(session, session::look_from_now(session, owing));
 }
 
+void tell_doubled(Context& context, std::span<Before> nodes) {
+  for (auto& entry : nodes)
+    if (auto single = session::refuse_duplicate(*context.session, entry.node); !single) {
+      context.errors.push_back(std::move(single.error()));
+      entry.doubled = true;
+      entry.alive = false;
+    }
+}
+
 /// After the command: whether anybody is there at all. Of a stopped node without heartbeat and guarding
 /// nothing can be known, so that its silence is no error.
 Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Before>& nodes) {
@@ -70,15 +79,9 @@ Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Bef
     if (const auto looked = session::look_for_second(session, nodes); !looked) return looked;
   if (const auto heard = session::hear_who_lives(session, nodes, kGuardPatience); !heard) return heard;
   // A stopped node is heard to be two only once it has started.
-  std::vector<std::uint8_t> doubled;
-  for (auto& entry : nodes)
-    if (auto single = session::refuse_duplicate(session, entry.node); !stops && !single) {
-      context.errors.push_back(std::move(single.error()));
-      doubled.push_back(entry.node);
-      entry.alive = false;
-    }
+  if (!stops) tell_doubled(context, nodes);
   for (const auto& entry : nodes) {
-    if (entry.alive || std::ranges::find(doubled, entry.node) != doubled.end()) continue;
+    if (entry.alive || entry.doubled) continue;
     auto error = drive_error(
         Errc::timeout, entry.node,
         fmt::format("'{}' was sent, not confirmed: nothing was heard of the node", canopen::name(command)),
@@ -131,15 +134,14 @@ Result<report::Value> wait_for_all(Context& context, NmtCommand command, std::sp
   const session::Stretch stretch(*context.session, until, session::Stretch::End::at_latest);
   const auto waited = context.session->wait(done, until);
   if (!waited) return fail(waited.error());
-  if (is_reset(command))
+  if (is_reset(command)) {
     if (const auto looked = session::look_for_second(*context.session, before); !looked)
       return fail(looked.error());
-  for (const auto& entry : before)
-    if (auto single = session::refuse_duplicate(*context.session, entry.node); is_reset(command) && !single)
-      context.errors.push_back(std::move(single.error()));
+    tell_doubled(context, before);
+  }
   tell_reset(context, before, command, true);
   for (const auto& entry : before)
-    if (!is_confirmed(*context.session, entry, command))
+    if (!entry.doubled && !is_confirmed(*context.session, entry, command))
       context.errors.push_back(unconfirmed(entry, command, heartbeats, context.session->can()->watch()));
   return report::Value(nmt_table(context, before, command, true));
 }

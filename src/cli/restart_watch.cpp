@@ -56,7 +56,11 @@ Result<void> RestartWatch::keep() {
     if (const auto kept = keep_node(node); !kept) out = kept;
   silent_.fill(false);
   answered_.fill(false);
-  for (const auto node : canopen::every_node_id()) restarts_[node] = starts(node).restarts;
+  for (const auto node : canopen::every_node_id()) {
+    const auto restarts = starts(node).restarts;
+    if (restarts != restarts_[node]) heard_[node] = {};  // Another drive may have come.
+    restarts_[node] = restarts;
+  }
   return out;
 }
 

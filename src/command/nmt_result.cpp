@@ -37,6 +37,7 @@ bool is_reset(NmtCommand command) {
 }
 
 bool is_confirmed(session::Session& session, const NodeLife& before, NmtCommand command) {
+  if (before.doubled) return false;
   if (is_reset(command)) return session.can()->watch().boots(before.node) > before.boots;
   return session.can()->watch().heartbeats(before.node) > before.heartbeats &&
          session.can()->watch().state(before.node) == canopen::state_after(command);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/pdo_index.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/operation_mode.hpp"
@@ -42,9 +43,20 @@ void MotionGuard::say(std::uint8_t controlword) noexcept {
   session_->network().send_last_word(node_, objects::kControlword, controlword);
 }
 
+namespace {
+
+/// By which its targets may come.
+bool is_of_an_rpdo(ObjectAddress object) {
+  const auto place = pdo_at(object.index);
+  return place && place->direction == PdoDirection::receive;
+}
+
+}  // namespace
+
 void MotionGuard::hear_write(ObjectAddress object, session::ForeignWrites::Way way) {
   if (end_) return;
-  if (object == objects::kControlword || own_.count(object) > 0) foreign_.emplace(object, way);
+  if (object == objects::kControlword || own_.count(object) > 0 || is_of_an_rpdo(object))
+    foreign_.emplace(object, way);
 }
 
 std::optional<MotionGuard::ForeignCommand> MotionGuard::foreign_command() const {
@@ -52,6 +64,8 @@ std::optional<MotionGuard::ForeignCommand> MotionGuard::foreign_command() const 
                             objects::kTargetPosition, objects::kTargetTorque})
     if (const auto found = foreign_.find(object); found != foreign_.end())
       return ForeignCommand{object, found->second};
+  for (const auto& [object, way] : foreign_)
+    if (is_of_an_rpdo(object)) return ForeignCommand{object, way};
   return std::nullopt;
 }
 

@@ -71,7 +71,8 @@ class MotionGuard {
   /// Errc::negative when foreign_command() knows of one: two masters would command it.
   Result<void> enable();
 
-  /// Of what decides about the motion (6040h, 6060h and the targets), what another master has written since.
+  /// Of what decides about the motion (6040h, 6060h, the targets, and the RPDOs by which they may come), what
+  /// another master has written since.
   struct ForeignCommand {
     ObjectAddress object;
     session::ForeignWrites::Way way;

@@ -15,6 +15,7 @@ struct NodeLife {
   std::uint32_t heartbeats = 0;  ///< heartbeats, when it was looked at.
   bool alive = false;
   bool answers = false;  ///< An SDO request.
+  bool doubled = false;  ///< Two drives have the node-ID: what one of them does says nothing of the other.
 };
 
 /// From now on.

@@ -8,6 +8,7 @@
 #include "can/local.hpp"
 #include "can/replay.hpp"
 #include "can/slcan.hpp"
+#include "can/slcan_place.hpp"
 #include "can/socketcan.hpp"
 #include "can/socketcand.hpp"
 #include "can/trace.hpp"
@@ -90,11 +91,25 @@ std::string canonical_url(std::string_view url) {
   return std::string(url);
 }
 
-std::optional<std::uint32_t> bitrate_of(std::string_view url) {
-  if (const auto link = link_of(url)) return link->bitrate;
+namespace {
+
+std::optional<can::SlcanPlace> slcan_place_of(std::string_view url) {
   constexpr std::string_view kSerial = "slcan:";
   if (!url.starts_with(kSerial)) return std::nullopt;
-  const auto place = can::parse_slcan_place(url.substr(kSerial.size()));
+  auto place = can::parse_slcan_place(url.substr(kSerial.size()));
+  return place ? std::optional(std::move(*place)) : std::nullopt;
+}
+
+}  // namespace
+
+std::string url_without_bitrate(std::string_view url) {
+  const auto place = slcan_place_of(url);
+  return place ? "slcan:" + place->device : canonical_url(url);
+}
+
+std::optional<std::uint32_t> bitrate_of(std::string_view url) {
+  if (const auto link = link_of(url)) return link->bitrate;
+  const auto place = slcan_place_of(url);
   return place ? std::optional(place->bitrate) : std::nullopt;
 }
 

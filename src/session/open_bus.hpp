@@ -39,6 +39,9 @@ std::string canonical_url(std::string_view url);
 /// Whether remote frames can be sent on it: the protocol of socketcand has none.
 bool carries_remote_frames(std::string_view url);
 
+/// The same bus at whatever bitrate: an adapter whose URL names one is `slcan:/dev/ttyACM0`.
+std::string url_without_bitrate(std::string_view url);
+
 /// The bitrate of a bus in bit/s, where its URL or the kernel tells it.
 std::optional<std::uint32_t> bitrate_of(std::string_view url);
 

@@ -65,7 +65,8 @@ Result<OwedValue> value_of(const Value& record, const std::string& file) {
 OwedRestartFile::OwedRestartFile(const fs::path& state_folder, std::string_view bus_url, std::uint8_t node)
     : node_(node) {
   if (!state_folder.empty())
-    path_ = state_folder / fmt::format("restart-{}-node-{}.json", bus_name(bus_url), node);
+    path_ = state_folder /
+            fmt::format("restart-{}-node-{}.json", bus_name(session::url_without_bitrate(bus_url)), node);
 }
 
 bool OwedRestartFile::is_there() const {

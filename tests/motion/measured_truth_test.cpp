@@ -153,6 +153,12 @@ TEST_F(MeasuredTruth, WhatAnotherMasterWritesEndsMovesAndTorques) {
       << pushed.outcome.error().message;
 }
 
+/// By which targets may come that nobody has seen.
+TEST_F(MeasuredTruth, AnRpdoThatAnotherMasterMapsEndsTheMotion) {
+  at_sample(5, [&] { bench.bus->injected.emplace_back("601#2300160120006040"); });
+  expect_ended(bench.move(move_to("5rev", "60rpm")), "another master wrote object 0x1600:1");
+}
+
 TEST_F(MeasuredTruth, AModeThatCannotGoBackToNoneIsANote) {
   MotionBench own("cia402", 10000);
   ASSERT_EQ(load_le(own.drive().value(objects::kModeOfOperation)), 0U);

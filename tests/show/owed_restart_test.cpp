@@ -34,9 +34,10 @@ class OwedRestartKept : public testing::Test {
     ASSERT_TRUE(bus) << bus.error().message;
     session = std::make_unique<session::Session>(std::move(*bus), url, session::Options{});
   }
-  static OwedRestart owed(session::OwedValue value) {
+  static OwedRestart owed(session::OwedValue value, std::uint32_t serial = 0) {
     OwedRestart out;
     out.identity.node = 1;
+    out.identity.serial = serial;
     out.identity.device_type = kDeviceType;
     out.values.push_back(std::move(value));
     out.node_id = kNodeIdParameter;
@@ -50,21 +51,33 @@ class OwedRestartKept : public testing::Test {
   std::unique_ptr<session::Session> session;
 };
 
-/// Without a serial number the kind alone is known; that it holds another node-ID shows that it is another.
-TEST_F(OwedRestartKept, IsNotOfADriveThatLaterHasTheOldNodeId) {
+/// A drive of the kind at the node-ID that waits may be another one, unless its serial number is the same.
+TEST_F(OwedRestartKept, IsOverWhereTheSameDriveAnswersWithItsNewNodeId) {
+  for (const auto serial : {0U, 1U}) {
+    open(serial == 0 ? "gsd600@5" : "gsd600@5?lss", "sim:one");
+    ASSERT_TRUE(file().write(owed({kNodeIdParameter, Bytes{1, 0}, Bytes{5, 0}, true}, serial)));
+    EXPECT_EQ(waits(), serial == 0);
+    EXPECT_EQ(file().is_there(), serial == 0);
+  }
+}
+
+/// Somebody else may have written it.
+TEST_F(OwedRestartKept, AnotherNodeIdInItsMemoryEndsNothingElse) {
   open("gsd600@1", "sim:one");
   auto kept = owed({kNodeIdParameter, Bytes{1, 0}, Bytes{5, 0}, true});
   kept.values.push_back({{0x2003, 2}, Bytes{0, 0}, Bytes{1, 0}, true});
   ASSERT_TRUE(file().write(kept));
-  EXPECT_FALSE(waits()) << "its Pn0601 is 1 as delivered";
-  EXPECT_FALSE(file().is_there());
+  const auto waiting = owed_restart(*session, folder, 1).values;
+  ASSERT_EQ(waiting.size(), 1U);
+  EXPECT_EQ(waiting.front().object, (ObjectAddress{0x2003, 2})) << "its Pn0601 is 1 as delivered";
+  EXPECT_TRUE(file().is_there());
 }
 
-TEST_F(OwedRestartKept, IsOverWhereTheDriveAnswersWithItsNewNodeId) {
-  open("gsd600@5", "sim:one");
-  ASSERT_TRUE(file().write(owed({kNodeIdParameter, Bytes{1, 0}, Bytes{5, 0}, true})));
+TEST_F(OwedRestartKept, AnotherDriveAtTheNodeOwesNothingAndItsOwnMayComeBack) {
+  open("gsd600@1?lss", "sim:one");
+  ASSERT_TRUE(file().write(owed({{0x2003, 2}, Bytes{0, 0}, Bytes{1, 0}, true}, 4711)));
   EXPECT_FALSE(waits());
-  EXPECT_FALSE(file().is_there());
+  EXPECT_TRUE(file().is_there());
 }
 
 TEST_F(OwedRestartKept, StaysWhereNobodyAnswersOrAnotherKindDoes) {
@@ -75,15 +88,20 @@ TEST_F(OwedRestartKept, StaysWhereNobodyAnswersOrAnotherKindDoes) {
   EXPECT_TRUE(waits());
 }
 
-TEST_F(OwedRestartKept, IsOverWhereTheDriveAnswersAtItsNewBitrate) {
-  for (const auto& [bitrate, is_over] : {std::pair{1'000'000U, false}, std::pair{500'000U, true}}) {
-    open("gsd600@1", "slcan:/dev/ttyNone@1M");
-    // As delivered: the code of 1 Mbit/s.
-    auto kept = owed({kBitrateParameter, Bytes{6, 0}, Bytes{8, 0}, true});
+TEST_F(OwedRestartKept, IsOverWhereTheSameDriveAnswersAtItsNewBitrate) {
+  struct Case {
+    std::uint32_t bitrate;
+    std::uint32_t serial;
+    bool is_over;
+  };
+  for (const auto& [bitrate, serial, is_over] :
+       {Case{1'000'000, 1, false}, Case{500'000, 0, false}, Case{500'000, 1, true}}) {
+    open(serial == 0 ? "gsd600@1" : "gsd600@1?lss", "slcan:/dev/ttyNone@1M");
+    auto kept = owed({kBitrateParameter, Bytes{6, 0}, Bytes{8, 0}, true}, serial);
     kept.bus_bitrate = bitrate;
     ASSERT_TRUE(file().write(kept));
-    EXPECT_EQ(waits(), !is_over) << bitrate;
-    EXPECT_EQ(file().is_there(), !is_over) << bitrate;
+    EXPECT_EQ(waits(), !is_over) << bitrate << " " << serial;
+    EXPECT_EQ(file().is_there(), !is_over) << bitrate << " " << serial;
   }
 }
 
