@@ -99,7 +99,7 @@ TEST_F(OwedRestartKept, IsOverWhereTheSameDriveAnswersAtItsNewBitrate) {
     open(serial == 0 ? "gsd600@1" : "gsd600@1?lss", "slcan:/dev/ttyNone@1M");
     auto kept = owed({kBitrateParameter, Bytes{6, 0}, Bytes{8, 0}, true}, serial);
     kept.bus_bitrate = bitrate;
-    ASSERT_TRUE(file().write(kept));
+    ASSERT_TRUE(OwedRestartFile(folder, "slcan:/dev/ttyNone@500k", 1).write(kept));
     EXPECT_EQ(waits(), !is_over) << bitrate << " " << serial;
     EXPECT_EQ(file().is_there(), !is_over) << bitrate << " " << serial;
   }
