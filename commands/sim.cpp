@@ -92,7 +92,7 @@ const Command kSim{
         "For trials without hardware: `servoctl sim gsd600@1 --bus local:cell` in one terminal, commands "
         "with --bus local:cell in another. Options after `?`, separated by `&`: state=FILE keeps the drives' "
         "memory, fault=0xFF00@2s raises a fault, silent=5s silences them after 5 s, delay=20ms delays "
-        "answers, lie=late,twice makes them deviate from the standard (README.md, docs/modbus.md and "
+        "answers, lie=late,twice makes them deviate from the standard (docs/buses.md, docs/modbus.md and "
         "docs/ethercat.md list the words); counts=8388608 sets the counts per revolution where no object reports them; "
         "panel=PA-20=0,P0.03=7 sets parameters as on the panel. "
         "On EtherCAT, `servoctl sim sv2@1,sv2@2 --bus coe:local:cell` (or coe:veth1, one end of a veth pair), "

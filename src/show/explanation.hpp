@@ -40,7 +40,7 @@ std::vector<std::string> explained_names(std::span<const Library> libraries);
 inline constexpr std::string_view kExitCodes = "exit codes";
 inline constexpr std::string_view kAlStatusCodes = "AL status codes";
 
-/// `exit 5`, and all of them: what the exit codes of the program mean (README.md, "For scripts").
+/// `exit 5`, and all of them: what the exit codes of the program mean (docs/scripting.md).
 drive::Topic exit_code_topic();
 
 /// What the codes of EtherCAT slaves mean, and what to do (ethercat/al_status.hpp).
