@@ -32,7 +32,6 @@ void Mailbox::start(TimePoint now) {
   free_ = false;
   answered_ = false;
   counts_ = false;
-  repeated_ = false;
   skipped_ = false;
   in_doubt_ = false;
   uncounted_ = false;
@@ -199,7 +198,6 @@ bool Mailbox::recover(ByteSpan status, TimePoint now) {
   const bool done = ((status[kSm1Processor] ^ activate_) & reg::kSmRepeatDone) == 0;
   if (done && full) {
     recovery_ = Recovery::none;
-    repeated_ = true;
     return false;
   }
   if (now < recovery_until_) {
@@ -228,7 +226,6 @@ void Mailbox::on_read(const Answer& answer, TimePoint now) {
     return go(State::look, now);
   }
   take_in(answer.data);
-  repeated_ = false;
   skipped_ = false;
   proceed(now);
 }

@@ -148,7 +148,6 @@ class Mailbox {
   TimePoint deadline_ = kNever;
   Bytes last_;             ///< The message read last, with its header.
   bool counts_ = false;    ///< The slave counts its messages.
-  bool repeated_ = false;  ///< What comes next was asked for again.
   bool skipped_ = false;   ///< What comes next may be the one behind one that is lost.
   std::deque<Event> events_;
   std::deque<canopen::Emergency> emergencies_;

@@ -45,9 +45,11 @@ void Mailbox::take_in(ByteSpan mailbox) {
   if (events_.size() > kKept) events_.pop_front();
 }
 
-/// Asked for again, a slave may give what had come already.
+/// Of a slave that counts its messages, the same one once more is no other (ETG.1000.4, 5.6): asked for again
+/// it may give what had come already, or it sends twice.
 bool Mailbox::is_old(ByteSpan message) const {
-  return repeated_ && counts_ && std::equal(message.begin(), message.end(), last_.begin(), last_.end());
+  const bool is_numbered = counts_ && (message[5] >> 4U & 0x07U) != 0;
+  return is_numbered && std::equal(message.begin(), message.end(), last_.begin(), last_.end());
 }
 
 void Mailbox::count(const MailboxView& message) {

@@ -27,7 +27,7 @@ namespace {
 const std::string& foreign_data() {
   static const std::string text = [] {
     std::string out;
-    for (const auto* folder : {"eds", "tests/cli/data", "tests/cli/golden/cases.txt"}) {
+    for (const auto* folder : {"eds", "tests/cli/data", "tests/cli/golden_cases.txt"}) {
       const auto read = [&](const std::filesystem::path& path) {
         std::ostringstream content;
         content << std::ifstream(path).rdbuf();

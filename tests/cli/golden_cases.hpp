@@ -18,7 +18,7 @@
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
-/// The cases of tests/cli/golden/cases.txt.
+/// The cases of tests/cli/golden_cases.txt.
 namespace servoctl::cli {
 
 inline std::filesystem::path golden_source() { return source_dir(); }
@@ -27,6 +27,14 @@ inline std::filesystem::path golden_folder() { return golden_source() / "tests/c
 struct GoldenCase {
   std::string name;
   std::vector<std::string> lines;  ///< Separated by ` ;; `, run one after the other on the same bus.
+
+  /// What is said of it stands in the file of its first word, `bad-` left out: that of `bad-read-axis` is
+  /// read.txt.
+  std::filesystem::path file() const {
+    constexpr std::string_view kBad = "bad-";
+    const auto rest = name.substr(name.starts_with(kBad) ? kBad.size() : 0);
+    return golden_folder() / (rest.substr(0, rest.find('-')) + ".txt");
+  }
 };
 
 /// The lines of a script, run on one simulated drive of the family: `sv2`, or `coe:sv2` on EtherCAT.
@@ -58,7 +66,7 @@ inline std::string with_golden_controls(std::string line) {
 
 inline std::vector<GoldenCase> golden_cases() {
   std::vector<GoldenCase> out;
-  std::ifstream file(golden_folder() / "cases.txt");
+  std::ifstream file(golden_source() / "tests/cli/golden_cases.txt");
   std::string line;
   while (std::getline(file, line)) {
     if (line.empty() || line.front() == '#') continue;

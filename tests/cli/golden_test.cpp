@@ -1,11 +1,13 @@
-// Golden command-line cases: tests/cli/golden/cases.txt names them, one file each holds what the program must
-// say, as text and as JSON. `./dev golden` writes the files anew; read the diff.
+// Golden command-line cases: tests/cli/golden_cases.txt names them, and the files in tests/cli/golden/ hold
+// what the program must say, as text and as JSON. `./dev golden` writes them anew; read the diff.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <map>
+#include <string>
 
 #include "golden_cases.hpp"
 
@@ -14,11 +16,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string slurp(const fs::path& path) {
+/// What stands in a file of golden outputs, by the name of the case: a line `=== NAME` begins each.
+std::map<std::string, std::string> said_in(const fs::path& path) {
+  constexpr std::string_view kHead = "=== ";
+  std::map<std::string, std::string> out;
   std::ifstream file(path);
-  std::ostringstream out;
-  out << file.rdbuf();
-  return out.str();
+  std::string* said = nullptr;
+  for (std::string line; std::getline(file, line);)
+    if (line.starts_with(kHead))
+      said = &out[line.substr(kHead.size())];
+    else if (said != nullptr)
+      *said += line + "\n";
+  return out;
+}
+
+void write_anew(const GoldenCase& c, std::string said) {
+  auto all = said_in(c.file());
+  all[c.name] = std::move(said);
+  const auto cases = golden_cases();
+  std::erase_if(all, [&](const auto& one) {
+    return std::ranges::find(cases, one.first, &GoldenCase::name) == cases.end();
+  });
+  std::ofstream file(c.file());
+  for (const auto& [name, text] : all) file << "=== " << name << "\n" << text;
 }
 
 class Golden : public testing::TestWithParam<GoldenCase> {};
@@ -35,25 +55,19 @@ TEST_P(Golden, SaysWhatItSaidBefore) {
     EXPECT_NE(json.exit, 0) << "with --json";
   }
   const auto said = text.said + json.said;
-  const auto path = golden_folder() / (GetParam().name + ".txt");
-  if (std::getenv("SERVOCTL_REWRITE_GOLDEN") != nullptr) {
-    std::ofstream(path) << said;
-    return;
-  }
-  EXPECT_EQ(slurp(path), said) << "`./dev golden` writes " << path << " anew";
+  if (std::getenv("SERVOCTL_REWRITE_GOLDEN") != nullptr) return write_anew(GetParam(), said);
+  EXPECT_EQ(said_in(GetParam().file())[GetParam().name], said)
+      << "`./dev golden` writes " << GetParam().file() << " anew";
 }
 
 INSTANTIATE_TEST_SUITE_P(Cases, Golden, testing::ValuesIn(golden_cases()), golden_test_name);
 
-TEST(GoldenCases, EveryFileBelongsToACase) {
-  const auto cases = golden_cases();
-  ASSERT_GT(cases.size(), 40U);
-  for (const auto& entry : fs::directory_iterator(golden_folder())) {
-    const auto stem = entry.path().stem().string();
-    if (stem == "cases") continue;
-    EXPECT_TRUE(std::any_of(cases.begin(), cases.end(), [&](const GoldenCase& c) { return c.name == stem; }))
-        << entry.path();
-  }
+TEST(GoldenCases, EveryOutputBelongsToACase) {
+  std::map<std::string, fs::path> files;
+  for (const auto& each : golden_cases()) files[each.name] = each.file();
+  ASSERT_GT(files.size(), 40U);
+  for (const auto& entry : fs::directory_iterator(golden_folder()))
+    for (const auto& [name, said] : said_in(entry.path())) EXPECT_EQ(files[name], entry.path()) << name;
 }
 
 }  // namespace

@@ -120,6 +120,22 @@ TEST_F(MailboxTest, ARepetitionOfWhatHasComeIsNoAnswer) {
   EXPECT_EQ(came(), "nothing");
 }
 
+TEST_F(MailboxTest, WhatASlaveThatCountsSendsTwiceIsOneMessage) {
+  slave.numbers = {1, 2, 2, 3};
+  send("0020AA");
+  run_for(5ms);
+  EXPECT_EQ(came(), "0020AA");
+  send("0020AB");
+  run_for(5ms);
+  EXPECT_EQ(came(), "0020AB");
+  slave.reply(3, hex("0020AB"));
+  run_for(5ms);
+  EXPECT_EQ(came(), "nothing");
+  send("0020AB");
+  run_for(5ms);
+  EXPECT_EQ(came(), "0020AB");
+}
+
 TEST_F(MailboxTest, ASlaveThatIsGoneIsToldToWhoSends) {
   slave.gone = true;
   mailbox.start(now);
