@@ -6,7 +6,8 @@ foreach(lang en zh)
   add_custom_command(OUTPUT ${install_folder}/${lang}/servoctl.1.gz
     COMMAND ${CMAKE_COMMAND} -E make_directory ${install_folder}/${lang}
     COMMAND ${CMAKE_COMMAND} -E env --unset=HOME --unset=XDG_STATE_HOME
-            sh -c "\"$0\" man --lang \"$2\" >\"$1\" && gzip -9nf \"$1\"" $<TARGET_FILE:servoctl> ${install_folder}/${lang}/servoctl.1 ${lang}
+            sh -c "into=$1; shift; \"$@\" man --lang \"$0\" >\"$into\" && gzip -9nf \"$into\"" ${lang} ${install_folder}/${lang}/servoctl.1
+            ${CMAKE_CROSSCOMPILING_EMULATOR} $<TARGET_FILE:servoctl>
     DEPENDS servoctl VERBATIM)
 endforeach()
 
@@ -64,5 +65,6 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/packaging/pack.cmake)
 set(CPACK_PRE_BUILD_SCRIPTS ${CMAKE_SOURCE_DIR}/packaging/debian_files.cmake)
 set(CPACK_SERVOCTL_BUILD ${CMAKE_BINARY_DIR})
+set(CPACK_SERVOCTL_PROCESSOR ${CMAKE_SYSTEM_PROCESSOR})
 set(CPACK_SERVOCTL_SOURCE ${CMAKE_SOURCE_DIR})
 include(CPack)

@@ -55,6 +55,11 @@ std::optional<Integer> parse_integer(std::string_view text) {
   return out;
 }
 
+std::optional<std::int64_t> parse_signed(std::string_view text) {
+  const auto number = parse_integer(text);
+  return number ? number->as_signed() : std::nullopt;
+}
+
 std::optional<double> parse_real(std::string_view text) {
   if (!text.empty() && text.front() == '+') {
     text.remove_prefix(1);

@@ -28,6 +28,8 @@ struct Integer {
 /// Reads `100`, `-5`, `+7`, `0x64`, `64h`, `-0x10`, `0b101`. A leading zero does not mean octal: `010` is
 /// ten.
 std::optional<Integer> parse_integer(std::string_view text);
+/// The same where it fits an i64.
+std::optional<std::int64_t> parse_signed(std::string_view text);
 
 /// Reads what parse_integer() reads without base prefix, and `1.5`, `1e3`, `-.25`. Always with a point,
 /// whatever the locale; `inf` and `nan` are refused.

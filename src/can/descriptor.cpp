@@ -1,6 +1,8 @@
 #include "can/descriptor.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
@@ -38,6 +40,13 @@ Wake wait_or_signal(int fd, short events, TimePoint deadline) {
   pollfd entry{fd, events, 0};
   const auto end = deadline == kNever ? std::nullopt : std::optional(deadline);
   return wake(servoctl::wait_or_signal_until(std::span(&entry, 1), end));
+}
+
+bool wait_in_slices(int socket, Duration slice) {
+  const auto time = to_timespec(slice);
+  const timeval limit{time.tv_sec, time.tv_nsec / 1000};
+  return ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit) == 0 &&
+         ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) & ~O_NONBLOCK) == 0;
 }
 
 Taken take_in(int fd, std::string& out) {

@@ -43,6 +43,11 @@ Wake wait_for(int fd, short events, TimePoint deadline);
 /// back to whoever asks what the signal means.
 Wake wait_or_signal(int fd, short events, TimePoint deadline);
 
+/// Whether recv() on this socket waits for a slice from now on: one system call a frame instead of three, for
+/// who waits where a signal may be answered a slice late. A socket that could not be told how long stays
+/// non-blocking: nothing may wait without end.
+bool wait_in_slices(int socket, Duration slice);
+
 /// What became of the other end.
 struct Taken {
   bool there = true;

@@ -26,8 +26,9 @@ using std::chrono::milliseconds;
 
 /// Between two looks at an interface that is down.
 constexpr Duration kReopenPause = milliseconds(5);
-/// Frames one call takes from the kernel.
+/// Frames one call takes from the kernel, and one that waits for the first.
 constexpr std::size_t kBatch = 64;
+constexpr std::size_t kAwaited = 8;
 /// Frames that wait here at most, some 24 MB; beyond that the kernel's queue has to do.
 constexpr std::size_t kMostWaiting = 1U << 20U;
 
@@ -100,20 +101,11 @@ class StampClock {
 /// The longest wait in one call of recvmmsg(): so late is a signal answered that came just before it.
 constexpr Duration kSlice = std::chrono::milliseconds(20);
 
-/// Whether recv() waits for a slice from now on. A socket that could not be told how long stays non-blocking:
-/// nothing may wait without end.
-bool wait_in_slices(int socket) {
-  const auto slice = to_timespec(kSlice);
-  const timeval limit{slice.tv_sec, slice.tv_nsec / 1000};
-  return ::setsockopt(socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit) == 0 &&
-         ::fcntl(socket, F_SETFL, ::fcntl(socket, F_GETFL) & ~O_NONBLOCK) == 0;
-}
-
 }  // namespace
 
 SocketCanBus::SocketCanBus(Descriptor socket, std::string interface_name, Duration send_limit)
     : socket_(std::move(socket)), interface_name_(std::move(interface_name)), send_limit_(send_limit) {
-  waits_in_slices_ = wait_in_slices(socket_.get());
+  waits_in_slices_ = wait_in_slices(socket_.get(), kSlice);
 }
 
 Result<void> SocketCanBus::send(const Frame& frame) {
@@ -178,7 +170,7 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
   for (;;) {
     auto opened = socketcan_socket(interface_name_);
     if (opened) {
-      waits_in_slices_ = wait_in_slices(opened->get());
+      waits_in_slices_ = wait_in_slices(opened->get(), kSlice);
       if (::dup3(opened->get(), socket_.get(), O_CLOEXEC) < 0)
         return fail(Errc::bus, fmt::format("cannot open {} again: {}", interface_name_, system_text(errno)));
       inbox_.clear();
@@ -206,7 +198,7 @@ void SocketCanBus::drain(Take take) {
   given_ = 0;
   for (auto before = inbox_.size(); !failed_ && before < kMostWaiting; before = inbox_.size()) {
     if (const auto filled = fill(take); !filled) failed_ = filled.error();
-    if (inbox_.size() < before + kBatch) return;
+    if (inbox_.size() < before + (take == Take::awaited ? kAwaited : kBatch)) return;
     take = Take::present;
   }
 }
@@ -224,7 +216,7 @@ Result<void> SocketCanBus::fill(Take which) {
     alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(std::uint32_t)) + CMSG_SPACE(sizeof(timespec))> bytes;
   };
   std::array<Control, kBatch> controls;
-  const std::size_t most = which == Take::awaited ? 1 : kBatch;
+  const std::size_t most = which == Take::awaited ? kAwaited : kBatch;
   for (std::size_t i = 0; i < most; ++i) {
     parts[i] = {&raw[i], sizeof raw[i]};
     messages[i] = {};
@@ -234,7 +226,7 @@ Result<void> SocketCanBus::fill(Take which) {
     messages[i].msg_hdr.msg_controllen = controls[i].bytes.size();
   }
   const int count = ::recvmmsg(socket_.get(), messages.data(), static_cast<unsigned>(most),
-                               which == Take::awaited ? 0 : MSG_DONTWAIT, nullptr);
+                               which == Take::awaited ? MSG_WAITFORONE : MSG_DONTWAIT, nullptr);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return {};
   if (count <= 0 || messages[0].msg_len == 0) {
     is_bus_off_ = false;

@@ -74,7 +74,7 @@ class SocketCanBus final : public Bus {
   Wake wait_for_frames(TimePoint deadline);
   enum class Take : std::uint8_t {
     present,  ///< What is there now.
-    awaited,  ///< One frame, for which a slice is waited.
+    awaited,  ///< The first, for which a slice is waited, and what came with it.
   };
   Result<void> fill(Take which);
   void drain(Take take = Take::present);

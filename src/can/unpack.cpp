@@ -3,8 +3,6 @@
 #define ZLIB_CONST
 #include <zlib.h>
 
-#include <algorithm>
-
 namespace servoctl::can {
 
 Unpacked unpack(std::string_view packed, std::size_t most) {
@@ -16,19 +14,17 @@ Unpacked unpack(std::string_view packed, std::size_t most) {
   constexpr std::size_t kStep = std::size_t{64} << 10U;
   auto& bytes = out.bytes;
   int state = Z_OK;
-  // Grows as it comes: what is said to be large may be small. One byte beyond the limit shows that there is
-  // more.
+  // Grows as it comes: what is said to be large may be small.
+  std::string step(kStep, '\0');
   while (state == Z_OK && bytes.size() <= most) {
-    const auto size = bytes.size();
-    bytes.resize(std::min(most + 1, size + kStep));
-    stream.next_out = reinterpret_cast<Bytef*>(bytes.data() + size);
-    stream.avail_out = static_cast<uInt>(bytes.size() - size);
+    stream.next_out = reinterpret_cast<Bytef*>(step.data());
+    stream.avail_out = static_cast<uInt>(step.size());
     state = ::inflate(&stream, Z_NO_FLUSH);
-    bytes.resize(bytes.size() - stream.avail_out);
+    bytes.append(step, 0, step.size() - stream.avail_out);
   }
   ::inflateEnd(&stream);
   out.whole = state == Z_STREAM_END && bytes.size() <= most;
-  bytes.resize(std::min(bytes.size(), most));
+  if (bytes.size() > most) bytes.erase(most);
   return out;
 }
 

@@ -20,9 +20,8 @@ Result<motion::PanelValues> panel_values(std::string_view text) {
   motion::PanelValues out;
   for (const auto part : split(text, ',')) {
     const auto equals = part.find('=');
-    const auto value =
-        equals == std::string_view::npos ? std::nullopt : parse_integer(part.substr(equals + 1));
-    const auto number = value ? value->as_signed() : std::nullopt;
+    const auto number =
+        equals == std::string_view::npos ? std::nullopt : parse_signed(part.substr(equals + 1));
     if (!number || equals == 0)
       return fail(Errc::usage, fmt::format("--panel: '{}' is not NAME=VALUE", part),
                   "such as --panel PA-20=0");

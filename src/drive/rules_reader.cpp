@@ -90,8 +90,7 @@ bool read_numbered(const toml::node& node, std::map<std::int64_t, T>& out) {
   const auto* table = node.as_table();
   if (table == nullptr) return false;
   for (const auto& [key, value] : *table) {
-    const auto digits = parse_integer(std::string_view(key.str()));
-    const auto number = digits ? digits->as_signed() : std::nullopt;
+    const auto number = parse_signed(std::string_view(key.str()));
     if (!number || !drive::get(value, out[*number])) return false;
   }
   return true;

@@ -57,8 +57,7 @@ bool applies(const Topic& topic, const Profile& profile) {
 void remove_other_methods(Topic& topic, const Profile& profile) {
   if (topic.object != objects::kHomingMethod || topic.value) return;
   std::erase_if(topic.rows, [&](const TopicRow& row) {
-    const auto method = parse_integer(row.cells.front());
-    const auto number = method ? method->as_signed() : std::nullopt;
+    const auto number = parse_signed(row.cells.front());
     return number && !has_method(profile, *number);
   });
 }

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "base/signal_wait.hpp"
 #include "ethernet/interface.hpp"
 
 namespace servoctl::ethernet {
@@ -23,6 +24,9 @@ using std::chrono::milliseconds;
 constexpr std::uint16_t kEtherCat = 0x88A4;
 /// Between two looks at an interface that is down or has no link.
 constexpr Duration kReopenPause = milliseconds(5);
+/// The longest wait in one call of recvfrom(): the kernel rounds it up to its ticks, of 4 ms on most
+/// machines.
+constexpr Duration kSlice = milliseconds(4);
 /// How long send() tries while the queue of the interface is full.
 constexpr Duration kSendLimit = milliseconds(20);
 
@@ -92,6 +96,14 @@ bool wait_for_link(const std::string& name, TimePoint deadline) {
 
 }  // namespace
 
+RawPort::RawPort(Descriptor socket, std::optional<WireLock> lock, std::string name, End end, int index)
+    : socket_(std::move(socket)),
+      lock_(std::move(lock)),
+      name_(std::move(name)),
+      end_(end),
+      index_(index),
+      waits_in_slices_(can::wait_in_slices(socket_.get(), kSlice)) {}
+
 Result<void> RawPort::send(ByteSpan frame) {
   if (const auto checked = check_frame(frame); !checked) return checked;
   std::optional<TimePoint> limit;  // The clock is asked only when the first try fails.
@@ -108,13 +120,18 @@ Result<void> RawPort::send(ByteSpan frame) {
   }
 }
 
+/// While the deadline is far the kernel waits with the frames; near it poll() is precise, and no signal slips
+/// by it.
 Result<std::optional<ByteSpan>> RawPort::receive(TimePoint deadline) {
   for (;;) {
-    if (can::wait_or_signal(socket_.get(), POLLIN, deadline) != Wake::ready) return std::optional<ByteSpan>();
+    const bool slice = waits_in_slices_ && deadline > now() + 2 * kSlice;
+    if (slice ? signal_is_noted() : can::wait_or_signal(socket_.get(), POLLIN, deadline) != Wake::ready)
+      return std::optional<ByteSpan>();
     sockaddr_ll from{};
     socklen_t from_size = sizeof from;
-    const auto size = ::recvfrom(socket_.get(), frame_.data(), frame_.size(), MSG_DONTWAIT | MSG_TRUNC,
-                                 reinterpret_cast<sockaddr*>(&from), &from_size);
+    const auto size =
+        ::recvfrom(socket_.get(), frame_.data(), frame_.size(), MSG_TRUNC | (slice ? 0 : MSG_DONTWAIT),
+                   reinterpret_cast<sockaddr*>(&from), &from_size);
     if (size < 0 && (errno == EAGAIN || errno == EINTR)) continue;
     if (size <= 0) return interface_lost(name_, size < 0 ? errno : EPIPE);
     // Frames of this machine are told as outgoing; what is too long is none of EtherCAT.
@@ -141,6 +158,7 @@ Result<void> RawPort::open_again() {
     index_ = *index;
   }
   // It takes the place of the old one, on which others may poll.
+  waits_in_slices_ = can::wait_in_slices(socket->get(), kSlice);
   if (::dup3(socket->get(), socket_.get(), O_CLOEXEC) < 0) return interface_cannot_open(name_, errno);
   return {};
 }

@@ -30,12 +30,7 @@ Result<std::unique_ptr<Port>> open_raw_port(std::string_view interface_name, End
 class RawPort final : public Port {
  public:
   /// `lock` is empty where nobody else can be. `name` and `index` are those of the interface.
-  RawPort(can::Descriptor socket, std::optional<WireLock> lock, std::string name, End end, int index = 0)
-      : socket_(std::move(socket)),
-        lock_(std::move(lock)),
-        name_(std::move(name)),
-        end_(end),
-        index_(index) {}
+  RawPort(can::Descriptor socket, std::optional<WireLock> lock, std::string name, End end, int index = 0);
 
   TimePoint now() const override { return steady_now(); }
   /// Errc::bug for a frame that is too short or too long. Errc::bus also without a link, where the driver
@@ -55,6 +50,7 @@ class RawPort final : public Port {
   std::string name_;
   End end_;
   int index_;
+  bool waits_in_slices_;
   std::array<std::uint8_t, kLongestFrame> frame_{};
   TimePoint arrived_{};
 };

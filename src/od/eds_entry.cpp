@@ -182,7 +182,8 @@ void check_order(const IniSection& section, Entry& entry, Findings& findings) {
     tell("limits-crossed",
          fmt::format("{} is above {} in {}; neither is used", shown_limit(section, "LowLimit", *entry.low),
                      shown_limit(section, "HighLimit", *entry.high), name(entry.type)));
-    entry.low = entry.high = std::nullopt;
+    entry.low.reset();
+    entry.high.reset();
   }
   const bool below = above(entry.low, entry.default_value);
   if (below || above(entry.default_value, entry.high))

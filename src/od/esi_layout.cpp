@@ -92,10 +92,7 @@ void read_pdos(XmlElement device, EsiLayout& out, EsiFindings& findings) {
     }
 }
 
-std::int64_t nanoseconds(XmlElement element) {
-  const auto number = esi_integer(element.text());
-  return number ? number->as_signed().value_or(0) : 0;
-}
+std::int64_t nanoseconds(XmlElement element) { return esi_signed(element.text()).value_or(0); }
 
 void read_modes(XmlElement clocks, EsiLayout& out, EsiFindings& findings) {
   for (const auto& element : clocks.children("OpMode", kMostManagers)) {

@@ -20,8 +20,7 @@ constexpr std::size_t kMostMembers =
 std::vector<EnumLabel> labels_of(XmlElement data_type) {
   std::vector<EnumLabel> out;
   for (const auto& info : data_type.children("EnumInfo")) {
-    const auto number = esi_integer(info.child("Enum").text());
-    const auto value = number ? number->as_signed() : std::nullopt;
+    const auto value = esi_signed(info.child("Enum").text());
     auto text = esi_text(info, "Text");
     if (!value || text.english.empty()) continue;
     if (out.size() == kMostLabels) break;

@@ -119,6 +119,11 @@ std::uint64_t esi_number(XmlElement element, std::uint64_t max, EsiFindings& fin
   return checked_number(element, element.name(), element.text(), max, findings, otherwise);
 }
 
+std::optional<std::int64_t> esi_signed(std::string_view text) {
+  const auto number = esi_integer(text);
+  return number ? number->as_signed() : std::nullopt;
+}
+
 std::uint64_t esi_attribute(XmlElement element, const char* name, std::uint64_t max, EsiFindings& findings,
                             std::uint64_t otherwise) {
   return checked_number(element, name, element.attribute(name), max, findings, otherwise);

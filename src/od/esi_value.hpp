@@ -14,6 +14,8 @@ namespace servoctl::od {
 
 /// A number as ESI files write it (HexDecValue): `#x1A00`, `6656`, `-3`. Empty when it is none.
 std::optional<Integer> esi_integer(std::string_view text);
+/// The same where it fits an i64.
+std::optional<std::int64_t> esi_signed(std::string_view text);
 
 /// The number in an element's text, or in one of its attributes. `otherwise` when it is missing or empty, and
 /// when it is none or above `max`, which is told as an error.

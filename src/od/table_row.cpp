@@ -15,8 +15,7 @@ std::optional<std::vector<std::pair<std::int64_t, std::string>>> parse_labels(st
   for (const auto part : split(text, ';')) {
     const auto equals = part.find('=');
     if (equals == std::string_view::npos) return std::nullopt;
-    const auto number = parse_integer(trim(part.substr(0, equals)));
-    const auto value = number ? number->as_signed() : std::nullopt;
+    const auto value = parse_signed(trim(part.substr(0, equals)));
     const auto label = trim(part.substr(equals + 1));
     if (!value || label.empty() || label.find('=') != std::string_view::npos) return std::nullopt;
     out.emplace_back(*value, std::string(label));

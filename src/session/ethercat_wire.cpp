@@ -16,6 +16,8 @@ Result<void> EtherCatWire::send_frames(TimePoint now) {
   return {};
 }
 
+EtherCatWire::Lease::~Lease() { carrier.leave(*ring); }
+
 Result<void> EtherCatWire::flush(TimePoint now) {
   settle(now);
   return send_frames(now);

@@ -81,7 +81,7 @@ class EtherCatWire {
   struct Lease {
     ethercat::Ring* ring;
     ethercat::Carrier carrier;
-    ~Lease() { carrier.leave(*ring); }
+    ~Lease();
   };
 
   void settle(TimePoint now);

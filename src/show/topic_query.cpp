@@ -44,11 +44,6 @@ std::string with_numbers_apart(std::string_view text) {
   return out;
 }
 
-std::optional<std::int64_t> number_in(std::string_view word) {
-  const auto number = parse_integer(word);
-  return number ? number->as_signed() : std::nullopt;
-}
-
 /// Whether the cell is this number with a unit: `500 kbit/s` is `500` and `500k`.
 bool is_quantity(std::string_view cell, std::string_view word) {
   if (word.empty() || word.front() < '0' || word.front() > '9') return false;
@@ -87,7 +82,7 @@ std::size_t number_column(const drive::Topic& topic) {
 /// Words that tell by themselves: no number, one that says that it is hexadecimal, one of three digits.
 bool is_telling(std::string_view word) {
   constexpr std::size_t kTellingDigits = 3;
-  return !number_in(word) || is_marked_hex(word) || word.size() >= kTellingDigits;
+  return !parse_signed(word) || is_marked_hex(word) || word.size() >= kTellingDigits;
 }
 
 /// What people call the kinds of topics that are counted.
@@ -145,13 +140,13 @@ TopicQuery::TopicQuery(std::string_view words)
   if (const auto sign = text.find('='); sign != std::string::npos) {
     assigned_ = true;
     counted_ = trim(std::string_view(text).substr(0, sign));
-    number_ = number_in(trim(std::string_view(text).substr(sign + 1)));
+    number_ = parse_signed(trim(std::string_view(text).substr(sign + 1)));
     text[sign] = ' ';
   }
   for (const auto word : split(std::string_view(text), ' '))
     if (!word.empty()) words_.emplace_back(word);
   if (assigned_ || words_.size() < 2) return;
-  number_ = number_in(words_.back());
+  number_ = parse_signed(words_.back());
   for (std::size_t i = 0; i + 1 < words_.size(); ++i) append(counted_, words_[i], " ");
 }
 

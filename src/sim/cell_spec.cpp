@@ -86,8 +86,7 @@ std::optional<std::pair<std::string, std::int64_t>> panel_value(const drive::Pro
                                                                 std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos) return std::nullopt;
-  const auto number = parse_integer(text.substr(equals + 1));
-  const auto value = number ? number->as_signed() : std::nullopt;
+  const auto value = parse_signed(text.substr(equals + 1));
   const auto parameter = drive::resolve_parameter(profile, text.substr(0, equals));
   if (!value || !parameter) return std::nullopt;
   return std::pair((*parameter)->id, *value);

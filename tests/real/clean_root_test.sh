@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the .deb in a minimal Debian of the release that this machine runs, made by debootstrap, and uses it there: nothing of it
+# Installs the .deb in a minimal Debian of the release that this machine runs and of the package's processor, made by debootstrap, and uses it there: nothing of it
 # was installed for servoctl but man and what the .deb depends on. The root is made once for a build folder and unpacked for each run.
 # Exits with 125 for who is not root, where no mount namespace is to be had, or no network the first time.
 # usage: clean_root_test.sh SERVOCTL BUILD_DIR
@@ -14,19 +14,21 @@ for tool in debootstrap dpkg-deb dpkg-shlibdeps apt-get cpack; do
   command -v "$tool" >/dev/null || { echo "$tool is missing"; exit 125; }
 done
 release=$(sed -n 's/^VERSION_CODENAME=//p' /etc/os-release)
-made=$build/clean-root/$release.tar
 mkdir -p "$build/clean-root"
 work=$(mktemp -d)
 root=$work/root
 trap 'umount -R "$root/proc" 2>/dev/null || true; rm -rf --one-file-system "$work"' EXIT
+cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/packed" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
+processor=$(dpkg-deb -f "$work"/packed/*.deb Architecture)
+made=$build/clean-root/$release-$processor.tar
 if [ -s "$made" ]; then
   mkdir "$root"
   tar -xf "$made" -C "$root" --numeric-owner
 else
   # shellcheck disable=SC2016  # apt-get expands it.
   mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' "Codename: $release" 'Component: main' | head -1)
-  timeout 300 debootstrap --variant=minbase --include=man-db "$release" "$root" ${mirror:+"$mirror"} >"$work/log" 2>&1 ||
-    { tail -5 "$work/log"; echo "debootstrap cannot make a root of $release"; exit 125; }
+  timeout 900 debootstrap --arch="$processor" --variant=minbase --include=man-db "$release" "$root" ${mirror:+"$mirror"} >"$work/log" 2>&1 ||
+    { tail -5 "$work/log"; echo "debootstrap cannot make a root of $release for $processor"; exit 125; }
   rm -rf "$root"/var/cache/apt/archives/*.deb "$root"/var/lib/apt/lists/*
   tar -cf "$made.part" -C "$root" --numeric-owner . && mv "$made.part" "$made"
 fi
@@ -34,14 +36,14 @@ mount --rbind /proc "$root/proc"
 inside() { env -i LC_ALL=C PATH=/usr/bin:/usr/sbin DEBIAN_FRONTEND=noninteractive chroot "$root" "$@" 2>&1; }
 if inside sh -c 'command -v servoctl || find / -xdev -name "*servoctl*" | grep .'; then echo "the root is not clean"; exit 1; fi
 
-cpack --config "$build/CPackConfig.cmake" -G DEB -B "$work/packed" >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 # What it depends on and a minimal Debian has not, from the same place as the machine's own packages.
 for library in $(dpkg-deb -f "$work"/packed/*.deb Depends | tr ',' '\n' | sed 's/ *(.*//; s/ //g'); do
+  # shellcheck disable=SC2016  # dpkg-query expands it.
   if inside dpkg-query -W -f='${db:Status-Status}' "$library" | grep -qx installed; then continue; fi
-  file=$(find "$build/clean-root" -name "${library}_*.deb" | head -1)
+  file=$(find "$build/clean-root" -name "${library}_*_$processor.deb" | head -1)
   if [ -z "$file" ]; then
-    (cd "$build/clean-root" && apt-get download "$library") >"$work/log" 2>&1 || { tail -5 "$work/log"; echo "$library cannot be downloaded"; exit 125; }
-    file=$(find "$build/clean-root" -name "${library}_*.deb" | head -1)
+    (cd "$build/clean-root" && apt-get download "$library:$processor") >"$work/log" 2>&1 || { tail -5 "$work/log"; echo "$library cannot be downloaded"; exit 125; }
+    file=$(find "$build/clean-root" -name "${library}_*_$processor.deb" | head -1)
   fi
   cp "$file" "$root/library.deb"
   inside dpkg -i library.deb >"$work/log" || { cat "$work/log"; echo "$library cannot be installed"; exit 1; }
