@@ -34,8 +34,10 @@ constexpr std::size_t unit_of(TextEncoding encoding) {
 /// The first character of UTF-16; none where a surrogate has no other half.
 CodePoint first_of_utf16(std::string_view bytes, bool little) {
   constexpr std::size_t kUnit = 2;
-  const auto unit = [&](std::size_t i) -> char32_t {
-    return little ? at(bytes, i) | at(bytes, i + 1) << 8U : at(bytes, i) << 8U | at(bytes, i + 1);
+  const auto unit = [&](std::size_t i) {
+    const char32_t first = at(bytes, i);
+    const char32_t second = at(bytes, i + 1);
+    return little ? first | second << 8U : first << 8U | second;
   };
   if (bytes.size() < kUnit) return {};
   const auto first = unit(0);

@@ -101,15 +101,15 @@ RC_GTEST_PROP(BlockTransfer, NeverDeliversWrongDataOverALineThatLosesAndDoublesF
   Line line(object, options);
   line.client.start_download({0x1F50, 1}, data, line.now, Transfer::block);
   const auto written = line.run(fate);
-  RC_ASSERT(!written.has_value() || object.value == data);
-  RC_ASSERT(written.has_value() || written.error().code != Errc::bug);
+  RC_ASSERT((!written.has_value() || object.value == data));
+  RC_ASSERT((written.has_value() || written.error().code != Errc::bug));
   object.value = data;
   line.server.reset();
   (void)line.client.take_frame();
   line.client.start_upload({0x1F50, 1}, line.now, Transfer::block);
   const auto read = line.run(fate);
-  RC_ASSERT(!read.has_value() || *read == data);
-  RC_ASSERT(read.has_value() || read.error().code != Errc::bug);
+  RC_ASSERT((!read.has_value() || *read == data));
+  RC_ASSERT((read.has_value() || read.error().code != Errc::bug));
 }
 
 }  // namespace

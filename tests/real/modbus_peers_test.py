@@ -52,45 +52,53 @@ int main(int argc, char** argv) {
 }
 """
 
-PYMODBUS_SERVER = r"""
+# Version 3.8 (Debian 13) names framers by one type, 3.0 (Debian 12) by classes.
+PYMODBUS_FRAMERS = r"""
+try:
+    from pymodbus import FramerType
+    FRAMERS = {"rtu": FramerType.RTU, "ascii": FramerType.ASCII, "tcp": FramerType.SOCKET}
+except ImportError:
+    from pymodbus.transaction import ModbusAsciiFramer, ModbusRtuFramer, ModbusSocketFramer
+    FRAMERS = {"rtu": ModbusRtuFramer, "ascii": ModbusAsciiFramer, "tcp": ModbusSocketFramer}
+"""
+
+PYMODBUS_SERVER = PYMODBUS_FRAMERS + r"""
 import sys
 from pymodbus.datastore import ModbusSequentialDataBlock as Block, ModbusServerContext, ModbusSlaveContext
 from pymodbus.server import StartSerialServer, StartTcpServer
-from pymodbus.transaction import ModbusAsciiFramer, ModbusRtuFramer, ModbusSocketFramer
 registers = [0] * 0x1030
 registers[0x33], registers[0x99] = 200, 1
-unit = ModbusSlaveContext(hr=Block(0, registers), di=Block(0, [0, 0, 1, 0, 0, 0, 0, 0]), co=Block(0, [1, 0, 0, 0]), zero_mode=True)
+unit = ModbusSlaveContext(hr=Block(1, registers), di=Block(1, [0, 0, 1, 0, 0, 0, 0, 0]), co=Block(1, [1, 0, 0, 0]))
 context = ModbusServerContext(slaves={1: unit}, single=False)
 kind, where = sys.argv[1:]
 if kind == "tcp":
-    StartTcpServer(context=context, address=("127.0.0.1", int(where)), framer=ModbusSocketFramer)
+    StartTcpServer(context=context, address=("127.0.0.1", int(where)), framer=FRAMERS[kind])
 else:
-    StartSerialServer(context=context, port=where, framer={"rtu": ModbusRtuFramer, "ascii": ModbusAsciiFramer}[kind], baudrate=19200,
+    StartSerialServer(context=context, port=where, framer=FRAMERS[kind], baudrate=19200,
                       bytesize=8, parity="N", stopbits=1)
 """
 
-PYMODBUS_CLIENT = r"""
+PYMODBUS_CLIENT = PYMODBUS_FRAMERS + r"""
 import sys
 from pymodbus.client import ModbusSerialClient, ModbusTcpClient
-from pymodbus.transaction import ModbusAsciiFramer, ModbusRtuFramer
 kind, where = sys.argv[1:]
 if kind == "tcp":
     client = ModbusTcpClient("127.0.0.1", port=int(where))
 else:
-    client = ModbusSerialClient(where, framer={"rtu": ModbusRtuFramer, "ascii": ModbusAsciiFramer}[kind], baudrate=19200, bytesize=8,
+    client = ModbusSerialClient(where, framer=FRAMERS[kind], baudrate=19200, bytesize=8,
                                 parity="N", stopbits=1, timeout=1)
 assert client.connect()
-assert client.read_holding_registers(0x00, 1, slave=1).registers == [2]
+assert client.read_holding_registers(0x00, count=1, slave=1).registers == [2]
 assert not client.write_register(0x33, 200, slave=1).isError()
-assert client.read_holding_registers(0x33, 1, slave=1).registers == [200]
+assert client.read_holding_registers(0x33, count=1, slave=1).registers == [200]
 assert not client.write_registers(0x30, [5, 6], slave=1).isError()
-assert client.read_holding_registers(0x30, 2, slave=1).registers == [5, 6]
-assert client.read_discrete_inputs(0, 8, slave=1).bits == [False] * 8
-assert len(client.read_coils(0, 4, slave=1).bits) == 8
-assert client.read_holding_registers(0x0500, 1, slave=1).exception_code == 2
+assert client.read_holding_registers(0x30, count=2, slave=1).registers == [5, 6]
+assert client.read_discrete_inputs(0, count=8, slave=1).bits == [False] * 8
+assert len(client.read_coils(0, count=4, slave=1).bits) == 8
+assert client.read_holding_registers(0x0500, count=1, slave=1).exception_code == 2
 assert client.write_register(0x99, 2, slave=1).exception_code == 3
 assert client.write_register(0x1000, 2, slave=1).exception_code == 2
-assert client.read_input_registers(0, 1, slave=1).exception_code == 1
+assert client.read_input_registers(0, count=1, slave=1).exception_code == 1
 print("good")
 """
 
