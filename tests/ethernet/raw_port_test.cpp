@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/signal_wait.hpp"
 #include "child.hpp"
 #include "ethernet/interface.hpp"
 #include "frames.hpp"
@@ -54,6 +55,16 @@ TEST_F(RawPortTest, FramesComeInTheirOrderAndOneThatIsTooLongDoesNot) {
   EXPECT_LE(port_->arrived(), port_->now());
   EXPECT_GT(port_->arrived(), port_->now() - seconds(20));
   EXPECT_FALSE(*port_->receive(port_->now()));
+}
+
+TEST_F(RawPortTest, WaitsInSlicesUntilTheDeadlineAndASignalEndsIt) {
+  const auto deadline = port_->now() + milliseconds(30);
+  EXPECT_FALSE(*port_->receive(deadline));
+  EXPECT_GE(port_->now(), deadline);
+  note_signal();
+  EXPECT_FALSE(*port_->receive(port_->now() + std::chrono::hours(1)));
+  arrive(frame_of(1));
+  EXPECT_EQ(copy(**port_->receive(port_->now() + std::chrono::hours(1))), frame_of(1));
 }
 
 TEST_F(RawPortTest, ItsDescriptorTellsWhenAFrameIsThere) {
