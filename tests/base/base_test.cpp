@@ -37,7 +37,7 @@ TEST(ExitCode, IsTheOneScriptsRelyOn) {
 }
 
 TEST(Integer, IsReadAsPeopleWriteIt) {
-  const auto value = [](std::string_view text) { return parse_integer(text)->as_signed(); };
+  const auto value = [](std::string_view text) { return parse_signed(text); };
   EXPECT_EQ(value("100"), 100);
   EXPECT_EQ(value("-5"), -5);
   EXPECT_EQ(value("+7"), 7);
@@ -48,9 +48,10 @@ TEST(Integer, IsReadAsPeopleWriteIt) {
   EXPECT_EQ(value("010"), 10);
   EXPECT_EQ(value("0b101"), 5);
   EXPECT_EQ(parse_integer("18446744073709551615")->as_unsigned(), 18446744073709551615U);
-  EXPECT_EQ(parse_integer("18446744073709551615")->as_signed(), std::nullopt);
-  EXPECT_EQ(parse_integer("-9223372036854775808")->as_signed(), std::numeric_limits<std::int64_t>::min());
-  EXPECT_EQ(parse_integer("-9223372036854775809")->as_signed(), std::nullopt);
+  EXPECT_EQ(value("18446744073709551615"), std::nullopt);
+  EXPECT_EQ(value("x"), std::nullopt);
+  EXPECT_EQ(value("-9223372036854775808"), std::numeric_limits<std::int64_t>::min());
+  EXPECT_EQ(value("-9223372036854775809"), std::nullopt);
   EXPECT_EQ(parse_integer("-1")->as_unsigned(), std::nullopt);
 }
 
