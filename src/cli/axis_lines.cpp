@@ -167,7 +167,10 @@ Result<const Cabinet*> CabinetHolder::get(const Settings& settings) {
   std::error_code error;
   auto file = settings.cabinet;
   const bool named = !file.empty();
-  if (!named) file = cabinet::find_cabinet(fs::current_path(error));
+  if (!named) {
+    if (!found_ || !searches_once_) found_ = cabinet::find_cabinet(fs::current_path(error));
+    file = *found_;
+  }
   if (file.empty()) {
     cabinet_.reset();
     return nullptr;

@@ -20,8 +20,17 @@ class CabinetHolder {
   /// The file of the settings, or `cabinet.toml` in the current folder or above; null where there is none.
   /// Errc::file for one that was named and is not there, or cannot be used.
   Result<const cabinet::Cabinet*> get(const Settings& settings);
+  /// From now on `cabinet.toml` is searched for once, for many lines, until search_again().
+  void search_once(bool once) {
+    searches_once_ = once;
+    search_again();
+  }
+  /// A line may have made one.
+  void search_again() { found_.reset(); }
 
  private:
+  bool searches_once_ = false;
+  std::optional<std::filesystem::path> found_;
   std::filesystem::path file_;
   std::filesystem::file_time_type written_;
   std::uintmax_t size_ = 0;

@@ -112,6 +112,8 @@ class Shell {
   /// before.
   bool stay_open(bool stays) { return std::exchange(stays_open_, stays); }
   bool stays_open() const { return stays_open_; }
+  /// As CabinetHolder::search_once().
+  void search_cabinet_once(bool once) { cabinet_.search_once(once); }
   /// Who reads the lines de-energises at the end what they enabled.
   void disable_at_end() { disables_at_end_ = true; }
   /// Many lines are read: a signal that comes at any time until close() makes their exit code that of an

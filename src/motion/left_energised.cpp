@@ -55,6 +55,7 @@ Result<drive::DriveState> settled_state(show::Desk& desk, std::uint8_t node) {
 }  // namespace
 
 void tell_left_energised(show::Desk& desk, const std::set<std::uint8_t>& nodes) {
+  if (nodes.empty()) return;
   auto& session = *desk.session;
   const session::Deaf deaf(session);
   for (const auto node : nodes) {

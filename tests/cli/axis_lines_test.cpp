@@ -18,6 +18,26 @@ TEST_F(AxisLines, ANameStandsForBusNodeAndFamily) {
   EXPECT_TRUE(says("送料")) << all();
 }
 
+/// Of a batch file: each search asks for the file in every folder above.
+TEST_F(AxisLines, ManyLinesSearchForTheirFileOnceAndAgainBehindOneThatMayHaveMadeIt) {
+  const auto before = fs::current_path();
+  const auto below = folder / "below";
+  fs::create_directories(below);
+  fs::rename(folder / "cabinet.toml", folder / "elsewhere.toml");
+  fs::current_path(below);
+  CabinetHolder holder;
+  holder.search_once(true);
+  EXPECT_EQ(holder.get({}).value(), nullptr);
+  fs::rename(folder / "elsewhere.toml", folder / "cabinet.toml");
+  EXPECT_EQ(holder.get({}).value(), nullptr);
+  holder.search_again();
+  const auto found = holder.get({});
+  fs::current_path(before);
+  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_NE(*found, nullptr);
+  EXPECT_EQ((*found)->axes.size(), 4U);
+}
+
 TEST_F(AxisLines, TheFirstWordAfterACommandMayBeAnAxis) {
   EXPECT_EQ(run("param get feeder1,feeder2 Pn0202 --json"), 0) << all();
   EXPECT_TRUE(says(R"("axis":"feeder1")") && says(R"("axis":"feeder2")")) << all();

@@ -206,6 +206,7 @@ class BatchRun {
 int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file) {
   const bool produced = shell.produces_sync();
   const bool stayed = shell.stay_open(true);
+  shell.search_cabinet_once(true);
   BatchRun run(shell, steps, file);
   for (const auto& step : steps)
     if (!run.take(step)) break;
@@ -218,6 +219,7 @@ int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file
     run.let_go();
     code = exit_code(Errc::interrupted);
   }
+  shell.search_cabinet_once(false);
   shell.stay_open(stayed);
   return code;
 }

@@ -72,6 +72,7 @@ void Console::out(std::string_view text) {
 }
 
 void Console::err(std::string_view text) {
+  if (text.empty()) return;
   const auto shown = printable_lines(chinese_ ? remarks_in_chinese(text) : std::string(text));
   write_err(dressed(fitted(shown, err_width()), STDERR_FILENO));
   if (log_ == nullptr) return;
