@@ -26,7 +26,7 @@ using Words = std::vector<std::string>;
 
 /// A hint, and the line that was given it.
 struct Hint {
-  std::string file;
+  std::string name;  ///< Of the golden case.
   std::string line;
   std::string text;
 };
@@ -35,11 +35,13 @@ std::vector<Hint> all_hints() {
   std::vector<Hint> out;
   for (const auto& entry : fs::directory_iterator(fs::path(source_dir()) / "tests/cli/golden")) {
     std::ifstream file(entry.path());
+    std::string name;
     std::string line;
     for (std::string text; std::getline(file, text);) {
+      if (text.starts_with("=== ")) name = text.substr(4);
       if (text.starts_with("$ ")) line = text.substr(2);
       if (text.starts_with("  hint: ") && !line.ends_with(" --json"))
-        out.push_back({entry.path().filename().string(), line, text.substr(8)});
+        out.push_back({name, line, text.substr(8)});
     }
   }
   return out;
@@ -100,7 +102,7 @@ TEST(Hints, NameCommandsThatRunAsTheyArePrinted) {
   int commands = 0;
   for (const auto& hint : all_hints())
     for (const auto& text : quoted(hint.text)) {
-      SCOPED_TRACE(hint.file + ": " + hint.line + "\n" + hint.text);
+      SCOPED_TRACE(hint.name + ": " + hint.line + "\n" + hint.text);
       const auto refused = split_words(hint.line).value();
       auto words = split_words(filled_in(text));
       ASSERT_TRUE(words) << text;
@@ -109,7 +111,7 @@ TEST(Hints, NameCommandsThatRunAsTheyArePrinted) {
       } else if (match_command(*words).command == nullptr) {
         EXPECT_TRUE(kNoCommands.count(text) > 0) << "`" << text << "` is no command";
         continue;
-      } else if (lacks_words(*words) || hint.file == "bad-group.txt" || hint.file == "bad-meaning.txt") {
+      } else if (lacks_words(*words) || hint.name == "bad-group" || hint.name == "bad-meaning") {
         // A command that is only named.
         EXPECT_NE(command::find_command(text), nullptr) << text;
         continue;
@@ -150,7 +152,7 @@ TEST(Hints, AskForNothingThatWasGiven) {
       const auto value = (*it)[2].str();
       const bool other = !value.empty() && std::islower(static_cast<unsigned char>(value[1])) != 0 &&
                          given + 1 != words->end() && value.substr(1) != *(given + 1);
-      EXPECT_TRUE(other) << hint.file << ": " << hint.line << "\n" << hint.text;
+      EXPECT_TRUE(other) << hint.name << ": " << hint.line << "\n" << hint.text;
     }
   }
   EXPECT_GT(asked, 15);
