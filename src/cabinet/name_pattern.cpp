@@ -30,11 +30,14 @@ Result<std::vector<std::string>> expand_name(const std::string& pattern) {
   const auto close = pattern.find('}', open);
   const auto inside = close == std::string::npos ? std::string() : pattern.substr(open + 1, close - open - 1);
   const auto ends = split(std::string_view(inside), '-');
-  const auto first = ends.size() == 2 ? parse_digits(ends[0], 10) : std::nullopt;
-  const auto last = ends.size() == 2 ? parse_digits(ends[1], 10) : std::nullopt;
-  if (!first || !last || *last < *first || *last - *first > 126)
+  const auto refused = [&] {
     return fail(Errc::file,
                 fmt::format("'{}': write a rising range in the braces, as feeder{{1-40}}", pattern));
+  };
+  if (ends.size() != 2) return refused();
+  const auto first = parse_digits(ends[0], 10);
+  const auto last = parse_digits(ends[1], 10);
+  if (!first || !last || *last < *first || *last - *first > 126) return refused();
   std::vector<std::string> out;
   for (auto i = *first; i <= *last; ++i)
     out.push_back(

@@ -237,7 +237,8 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   if (is_lost || (session != nullptr && session->was_away())) bus_.lose(*session);
   auto words = errors.empty() ? std::string() : show::abort_words(run.context, errors.front());
   auto value = result ? *result : Value();
-  const auto node = errors.empty() ? std::nullopt : errors.front().node;
+  std::string axis;
+  if (!errors.empty() && errors.front().node) axis = run.settings.names.of(*errors.front().node);
   const auto* const of_family = run.line.chinese_names();
   if (run.settings.shows_chinese()) put_into_chinese(run.context, of_family);
   name_axes_in(run.settings.names, run.context, value);
@@ -250,7 +251,7 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
           .told = run.settings.shows_chinese(),
           .leaves_power = leaves_power,
           .abort_words = std::move(words),
-          .axis = std::string(node ? run.settings.names.of(*node) : std::string_view()),
+          .axis = std::move(axis),
           .names = of_family != nullptr ? *of_family : report::Names()};
 }
 

@@ -69,8 +69,11 @@ report::Table nmt_table(Context& context, std::span<const NodeLife> before, NmtC
       {"node"}, {"command"}, {"confirmed", "", unless(!waited)}, {"state"}, {"result", "", unless(waited)}};
   for (const auto& entry : before) {
     const auto state = waited ? context.session->can()->watch().state(entry.node) : std::nullopt;
-    auto known = waited ? std::optional(is_confirmed(*context.session, entry, command)) : std::nullopt;
-    if (!waited && entry.node != 0 && !entry.alive && context.session->can() != nullptr) known = false;
+    std::optional<bool> known;
+    if (waited)
+      known = is_confirmed(*context.session, entry, command);
+    else if (entry.node != 0 && !entry.alive && context.session->can() != nullptr)
+      known = false;
     table.rows.push_back({entry.node == 0 ? Value("all") : Value(entry.node), canopen::name(command),
                           known ? Value(*known) : Value(), state ? Value(canopen::name(*state)) : Value(),
                           result_of_nmt(entry, known)});

@@ -59,8 +59,8 @@ void add_faults(const TopicQuery& query, const drive::Profile& profile, bool by_
                 std::vector<Explanation>& out) {
   constexpr std::size_t kDigits = 4;
   constexpr std::size_t kTellingCode = 3;
-  const auto code =
-      query.whole().size() < kDigits || by_name_only ? std::nullopt : code_in(query.whole(), kDigits);
+  const bool may_be_code = query.whole().size() >= kDigits && !by_name_only;
+  const auto code = code_in(may_be_code ? query.whole() : std::string_view(), kDigits);
   std::vector<const drive::Fault*> of_code;
   std::vector<const drive::Fault*> named;
   for (const auto& fault : profile.faults) {

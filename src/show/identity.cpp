@@ -56,14 +56,19 @@ void add_condition_columns(bool in_full, report::Table& table) {
 }
 
 void add_condition(const Desk& desk, const Condition& condition, bool in_full, report::List& row) {
-  const auto state =
-      condition.statusword ? std::optional(drive::decode_state(*condition.statusword)) : std::nullopt;
+  Value name;
+  Value shown;
+  if (condition.statusword) {
+    const auto state = drive::decode_state(*condition.statusword);
+    name = drive::name(state);
+    shown = desk.chinese ? Value(drive::name_zh(state)) : name;
+  }
   const auto fault = told_fault(desk.profile, desk.chinese, condition.fault, condition.statusword);
   if (!in_full) {
-    row.push_back(!state ? Value() : Value(desk.chinese ? drive::name_zh(*state) : drive::name(*state)));
+    row.push_back(std::move(shown));
     row.push_back(fault.cell(0));
   }
-  row.push_back(state ? Value(drive::name(*state)) : Value());
+  row.push_back(std::move(name));
   row.push_back(condition.statusword ? Value(*condition.statusword) : Value());
   row.push_back(fault.record());
 }

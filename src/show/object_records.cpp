@@ -130,7 +130,8 @@ Record object_details(const drive::Profile& profile, const od::Object& object, c
 
 std::vector<std::string> object_values(const drive::Profile& profile, const od::Entry& entry, bool chinese) {
   std::vector<std::string> out;
-  for (const auto& label : labels_of(drive::meaning(drive::target_at(&profile, entry.address), 0))) {
+  const auto meaning = drive::meaning(drive::target_at(&profile, entry.address), 0);
+  for (const auto& label : labels_of(meaning)) {
     const bool in_chinese = chinese && !label.label_zh.empty();
     out.push_back(fmt::format("{} {}", label.value, in_chinese ? label.label_zh : label.label));
   }

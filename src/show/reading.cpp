@@ -86,11 +86,11 @@ List reading_row(const Desk& desk, const Reading& reading) {
   else
     row.emplace_back();
   if (!reading.bytes) {
-    const auto type = reading.type              ? std::optional(*reading.type)
-                      : target.entry != nullptr ? std::optional(target.entry->type)
-                                                : std::nullopt;
-    row.insert(row.end(), {missing_cell(desk, reading), type ? Value(od::name(*type)) : Value(), Value(),
-                           Value(), Value(), Value(), Value(), Value(), Value(), Value(), Value(),
+    const auto type = reading.type              ? Value(od::name(*reading.type))
+                      : target.entry != nullptr ? Value(od::name(target.entry->type))
+                                                : Value();
+    row.insert(row.end(), {missing_cell(desk, reading), type, Value(), Value(), Value(), Value(), Value(),
+                           Value(), Value(), Value(), Value(),
                            error_record(reading.bytes.error(), abort_words(desk, reading.bytes.error()))});
     return row;
   }

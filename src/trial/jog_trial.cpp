@@ -152,25 +152,25 @@ class Direction {
     auto name = title("time to standstill");
     const double still =
         std::max(plan_->unit == "rpm" ? kStandstillRpm : 0, std::abs(plan_->value) * kStandstillPart);
-    std::optional<TimePoint> moved;
-    std::optional<TimePoint> stood;
+    const MotionSample* moved = nullptr;
+    const MotionSample* stood = nullptr;
     for (const auto& sample : done_->samples) {
       const auto speed = sample[Signal::velocity];
       if (!speed || sample.time < phase_.end || sample.time >= end) continue;
       if (std::abs(*speed) > still) {
-        moved = sample.time;
-        stood.reset();
-      } else if (!stood) {
-        stood = sample.time;
+        moved = &sample;
+        stood = nullptr;
+      } else if (stood == nullptr) {
+        stood = &sample;
       }
     }
-    if (!moved && !stood) return skip("stop", std::move(name));
     // One that did not come to rest moved to the end of what was seen.
+    const auto* last = stood != nullptr ? stood : moved;
+    if (last == nullptr) return skip("stop", std::move(name));
     auto criterion =
-        report::at_most(id("stop"), std::move(name),
-                        rounded(milliseconds_of(stood.value_or(moved.value_or(end)) - phase_.end)),
+        report::at_most(id("stop"), std::move(name), rounded(milliseconds_of(last->time - phase_.end)),
                         milliseconds_of(test_->longest_stop), "ms");
-    if (!stood) criterion.verdict = report::Verdict::failed;
+    if (stood == nullptr) criterion.verdict = report::Verdict::failed;
     out_->criteria.push_back(std::move(criterion));
   }
 
