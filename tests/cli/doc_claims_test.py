@@ -44,7 +44,7 @@ def output_of(command, folder):
 
 def all_tests():
     out = []
-    for pattern in ("tests/**/*.cpp", "tests/**/*.py", "tests/**/*.sh", "tests/**/cases.txt"):
+    for pattern in ("tests/**/*.cpp", "tests/**/*.py", "tests/**/*.sh", "tests/cli/golden_cases.txt"):
         out += [open(file, encoding="utf-8").read() for file in glob.glob(os.path.join(source, pattern), recursive=True)]
     return "\n".join(out)
 
