@@ -224,7 +224,6 @@ Outcome Shell::finish(Run& run, const Result<Value>& result) {
   if (!is_lost) tell_energised(run);
   tell_second_node(run);
   learn_from(run);
-  if (run.command->path.starts_with("cabinet ")) cabinet_.search_again();
   for (auto& notice : take_notices(run.context.profile, run.settings.chinese))
     run.context.notices.push_back(std::move(notice));
   tell_unread(*console_, run.context.notices);

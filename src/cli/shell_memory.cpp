@@ -77,6 +77,7 @@ void Shell::judge_writes(Run& run) {
 /// Behind a line, whatever became of it.
 void Shell::learn_from(Run& run) {
   tell_contradicted(run);
+  if (run.command->path.starts_with("cabinet ")) cabinet_.search_again();
   if (run.context.errors.empty())
     remember_family(run);
   else
