@@ -233,7 +233,7 @@ class Run:
         self.said.seek(0)
         unread = b""
         if self.unread is not None and select.select([self.unread], [], [], 0)[0]:
-            unread = os.read(self.unread, 65536)
+            unread = os.read(self.unread, 1 << 20)
         return (self.said.read() + unread).decode(errors="replace")
 
     def close(self):
@@ -306,6 +306,8 @@ def attack(drive):
         run.process.terminate()
     if place == "prompt" and output == "held terminal":
         termios.tcflow(run.held[0], termios.TCOON)
+    if run.unread is not None:  # From now on somebody reads, and a document of 20 MB may wait.
+        fcntl.fcntl(run.unread, fcntl.F_SETPIPE_SZ, 1 << 20)
     end = time.monotonic() + 15
     while run.process.poll() is None and time.monotonic() < end:
         run.read()

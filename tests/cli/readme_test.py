@@ -39,7 +39,7 @@ def tour(document):
                 out.append(line)
                 export = re.match(r"\$ export (\w+)=(\S+)$", line)
                 if export:
-                    env[export.group(1)] = export.group(2)
+                    env[export.group(1)] = export.group(2).strip("'")
                     continue
                 unset = re.match(r"\$ unset (\w+(?: \w+)*)$", line)
                 if unset:
