@@ -44,6 +44,7 @@ Result<void> energise(Context& context, motion::Motion& motion, const Items& sho
   motion::MotionGuard guard(*context.session, motion.units(), motion.node());
   if (context.dry_run) guard.rehearse(rehearsal);
   guard.set_other_source(motion.other_source());
+  if (const auto done = guard.learn_rpdos(); !done) return done;
   const bool starts_first = guard.needs_process_data();
   if (starts_first)
     if (const auto done = guard.start_node(); !done) return done;

@@ -52,6 +52,9 @@ Result<void> hear_owed_restarts(const Context& context) {
   return wait_for_boots(session, session::look_from_now(session, owing));
 }
 
+/// After it a drive may do what it did not do before.
+bool begins(NmtCommand command) { return is_reset(command) || command == NmtCommand::start; }
+
 void tell_doubled(Context& context, std::span<Before> nodes) {
   for (auto& entry : nodes)
     if (auto single = session::refuse_duplicate(*context.session, entry.node); !single) {
@@ -66,7 +69,7 @@ void tell_doubled(Context& context, std::span<Before> nodes) {
 Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Before>& nodes) {
   auto& session = *context.session;
   const bool stops = command == NmtCommand::stop;
-  if (!stops && !is_reset(command))
+  if (!stops && !begins(command))
     if (const auto asked = session::ask_who_answers(session, nodes); !asked) return asked;
   // Over a gateway a node that answers no SDO cannot be heard.
   if (stops && session.can() == nullptr) return {};
@@ -75,7 +78,7 @@ Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Bef
                                                    : session::wait_for_answers(session, nodes, kBootPatience);
         !back)
       return back;
-  if (is_reset(command))
+  if (begins(command))
     if (const auto looked = session::look_for_second(session, nodes); !looked) return looked;
   if (const auto heard = session::hear_who_lives(session, nodes, kGuardPatience); !heard) return heard;
   // A stopped node is heard to be two only once it has started.
@@ -134,7 +137,7 @@ Result<report::Value> wait_for_all(Context& context, NmtCommand command, std::sp
   const session::Stretch stretch(*context.session, until, session::Stretch::End::at_latest);
   const auto waited = context.session->wait(done, until);
   if (!waited) return fail(waited.error());
-  if (is_reset(command)) {
+  if (begins(command)) {
     if (const auto looked = session::look_for_second(*context.session, before); !looked)
       return fail(looked.error());
     tell_doubled(context, before);
@@ -159,7 +162,7 @@ Result<void> refuse_stopped(const session::Session& session, const Before& entry
 /// Whose drives they are is seen before what begins something is sent.
 Result<void> look_before(Context& context, NmtCommand command, std::vector<Before>& nodes) {
   auto& session = *context.session;
-  if (!is_reset(command) && command != NmtCommand::start) return {};
+  if (!begins(command)) return {};
   const auto least = is_reset(command) ? session::kBeforeMotion : session::kBeforeWrites;
   if (const auto single = session::hold_single(session, nodes, least); !single) return single;
   if (!is_reset(command)) return {};

@@ -15,7 +15,7 @@ namespace servoctl {
 /// of the contract that scripts rely on.
 enum class Errc : std::uint8_t {
   negative,     ///< It ran, and the answer is no: a difference, a failed check, an incomplete result.
-  usage,        ///< The request itself is wrong; nothing was sent.
+  usage,        ///< The request itself is wrong; nothing was changed.
   bus,          ///< The transport is missing, down or lost.
   timeout,      ///< The node did not answer in time.
   sdo_abort,    ///< The node answered and refused.

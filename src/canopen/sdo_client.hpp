@@ -44,6 +44,11 @@ class SdoClient {
   /// none. With Transfer::expedited, 1 to 4 bytes only.
   void start_download(ObjectAddress object, Bytes data, TimePoint now,
                       Transfer transfer = Transfer::automatic);
+  /// Does not wait for the second copy of an older answer, as a transfer of a node whose answers come twice
+  /// does: for a write that must not wait. Such a copy may be taken for its answer then.
+  void go_at_once(TimePoint now) {
+    if (state_ == State::copy) begin_wanted(now);
+  }
 
   /// The longest silence from now on. Must not be called while a transfer is under way.
   void set_timeout(Duration timeout) { core_.set_timeout(timeout); }

@@ -25,11 +25,10 @@ class RestartWatch {
   void learn(std::uint8_t node, const drive::Profile& profile) {
     owed_.learn(node, profile, session_->modbus() != nullptr, starts(node));
   }
-  /// Vendor objects that were written to a node whose family nobody has named: whether they wait is not
-  /// known.
-  std::vector<ObjectAddress> unjudged(std::uint8_t node) { return owed_.unjudged(node, starts(node)); }
-  /// They were reported.
-  void drop_unjudged(std::uint8_t node) { owed_.drop_unjudged(node); }
+  /// As OwedRestarts::take_unjudged().
+  std::vector<ObjectAddress> take_unjudged(std::uint8_t node) {
+    return owed_.take_unjudged(node, starts(node));
+  }
   /// Brings the folder up to date: between two lines. Asks a drive who it is where something has changed.
   /// Errc::file.
   Result<void> keep();

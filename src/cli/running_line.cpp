@@ -44,7 +44,7 @@ Result<void> RunningLine::confirm(std::string_view question) {
     return fail(Errc::refused, fmt::format("confirmation needed: {}", shown), "add --yes to confirm");
   const HeardStarts before(shell_->sessions());
   if (console.ask(asked)) return hold_nodes(before);
-  return fail(shell_->cancelled() ? Errc::interrupted : Errc::refused, "not confirmed; nothing was sent");
+  return fail(shell_->cancelled() ? Errc::interrupted : Errc::refused, "not confirmed; nothing was changed");
 }
 
 /// What was looked at before the question is what the answer is about.
@@ -56,7 +56,7 @@ Result<void> RunningLine::hold_nodes(const HeardStarts& before) const {
   return fail(drive_error(Errc::refused, *node,
                           "it has started while the question waited, and may be another drive, or hold other "
                           "values, than the question was about",
-                          "nothing was sent; give the line again, which looks at it anew"));
+                          "nothing was changed; give the line again, which looks at it anew"));
 }
 
 void RunningLine::emit(const report::Record& sample, std::string_view line) {

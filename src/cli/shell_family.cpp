@@ -156,16 +156,19 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
 }
 
 /// Of a drive that a line has written to without naming its family: what was found out of it or said with -d,
-/// else the one family that its identity fits. Empty where none is known.
+/// else the one family that its identity fits. Empty where none is known. The standard says nothing of the drive.
 std::string Shell::family_by_identity(Session& session, std::uint8_t node) {
-  if (const auto found = families_.find(key_of(session, node)); found != families_.end())
+  if (const auto found = families_.find(key_of(session, node));
+      found != families_.end() && found->second.family != drive::kStandardFamily)
     return found->second.family;
   if (session.modbus() != nullptr) return {};
   const auto identity = session::read_identity(session, node);
   if (!identity) return {};
   if (!options_.state_folder.empty()) {
     const auto known = KnownDriveFile(options_.state_folder, session.url(), node).read();
-    if (known && *known && show::change_of((*known)->identity, *identity).empty()) return (*known)->family;
+    if (known && *known && (*known)->family != drive::kStandardFamily &&
+        show::change_of((*known)->identity, *identity).empty())
+      return (*known)->family;
   }
   const auto fits = suggested(session, *identity, drive::find_families(options_.drive_folders));
   return fits.size() == 1 ? fits.front() : std::string();

@@ -50,13 +50,14 @@ Error serial_not_read(const command::Command& command, const cabinet::Axis& axis
 void Shell::judge_writes(Run& run) {
   auto* session = run.context.session;
   auto* watch = session == nullptr ? nullptr : bus_.restarts(*session);
-  if (watch == nullptr || run.context.profile != nullptr) return;
+  const auto* known = run.context.profile;
+  if (watch == nullptr || (known != nullptr && !known->is_generic())) return;
   for (const auto node : run.context.nodes) {
-    const auto written = watch->unjudged(node);
+    const auto written = watch->take_unjudged(node);
     if (node == 0 || written.empty()) continue;
     const auto family = family_by_identity(*session, node);
     const auto found = family.empty() ? Result<const drive::Profile*>(nullptr) : profile(family);
-    if (found && *found != nullptr) {
+    if (found && *found != nullptr && !(*found)->is_generic()) {
       watch->learn(node, **found);
       keep_restarts();
       if (auto notice =
@@ -65,11 +66,10 @@ void Shell::judge_writes(Run& run) {
         run.context.notices.push_back(std::move(notice));
       continue;
     }
-    watch->drop_unjudged(node);
     std::string objects;
     for (const auto object : written) append(objects, to_string(object));
     run.context.notices.push_back(fmt::format(
-        "node {}: whether {} takes effect at once or after a restart is not known without the family: add -d FAMILY",
+        "node {}: whether {} takes effect at once or after a restart is not known: its manual says it, or add -d FAMILY",
         node, objects));
   }
 }

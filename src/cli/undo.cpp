@@ -21,7 +21,7 @@ using WrittenLine = LastWrite::Line;
 Result<void> check_value(session::Session& session, std::uint64_t opening, const WrittenValue& value) {
   const auto refused = [&](const std::string& why) {
     return fail(
-        drive_error(Errc::refused, value.node, why, "nothing was sent; `param set` writes it by hand"));
+        drive_error(Errc::refused, value.node, why, "nothing was changed; `param set` writes it by hand"));
   };
   if (opening == value.opening && session.watch().boots(value.node) != value.boots)
     return refused("has restarted since it was written to");
@@ -100,7 +100,7 @@ Result<void> confirm_undo(Shell& shell, const WrittenLine& line, bool yes) {
   if (!shell.console().can_ask())
     return fail(Errc::refused, "confirmation needed: " + shown, "`undo --yes` confirms");
   if (shell.console().ask(shell.console().in_language(shown))) return {};
-  return fail(Errc::refused, "not confirmed; nothing was sent");
+  return fail(Errc::refused, "not confirmed; nothing was changed");
 }
 
 /// A line that puts one value back.

@@ -46,6 +46,7 @@ void CanObjectChannel::start_download(ObjectAddress object, Bytes data, TimePoin
   stirred_ = true;
   if (data.size() == 4) emergency_id_ = static_cast<std::uint32_t>(load_le(data));
   client_.start_download(object, std::move(data), now, transfer);
+  if (object == objects::kControlword) client_.go_at_once(now);  // It may be the one that stops the motor.
 }
 
 std::optional<Result<Bytes>> CanObjectChannel::take_result() {

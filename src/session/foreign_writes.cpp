@@ -15,28 +15,27 @@ using canopen::PdoDirection;
 /// Of a drive whose data list no RPDO (CiA 402-3 describes these).
 constexpr std::uint16_t kUsualRpdos = 4;
 
+/// Those that the data list.
 std::set<std::uint16_t> rpdo_numbers(const drive::Profile& profile) {
   std::set<std::uint16_t> out;
   for (const auto& object : profile.dictionary.objects())
     if (const auto place = canopen::pdo_at(object.index);
         place && !place->mapping && place->direction == PdoDirection::receive)
       out.insert(place->number);
-  for (std::uint16_t number = 1; out.empty() && number <= kUsualRpdos; ++number) out.insert(number);
   return out;
 }
 
-/// Reads these objects of one node; what it refuses, or does not answer, is left out: a drive without RPDOs
-/// may do either.
+/// Reads these objects of one node, each by a request of its own: one that is not answered says nothing of the
+/// others. What the node refuses is left out, and what it does not answer if it `may_be_silent`.
 Result<void> read_into(Values& values, Session& session, std::uint8_t node,
-                       const std::vector<ObjectAddress>& objects) {
-  std::vector<SdoRequest> requests;
-  for (const auto object : objects) requests.push_back({.node = node, .object = object});
-  const auto answers = session.transfer(requests);
-  for (std::size_t i = 0; i < answers.size(); ++i) {
-    if (answers[i])
-      values[objects[i]] = *answers[i];
-    else if (const auto code = answers[i].error().code; code == Errc::bus || code == Errc::interrupted)
-      return fail(answers[i].error());
+                       const std::vector<ObjectAddress>& objects, bool may_be_silent = false) {
+  for (const auto object : objects) {
+    auto answer = session.upload(node, object);
+    if (answer)
+      values[object] = std::move(*answer);
+    else if (const auto code = answer.error().code;
+             code != Errc::sdo_abort && !(may_be_silent && code == Errc::timeout))
+      return fail(answer.error());
   }
   return {};
 }
@@ -65,9 +64,12 @@ Result<void> ForeignWrites::learn_rpdos(const drive::Profile& profile) {
   std::vector<ObjectAddress> heads;
   std::vector<ObjectAddress> counts;
   std::vector<ObjectAddress> entries;
-  for (const auto number : rpdo_numbers(profile))
+  auto numbers = rpdo_numbers(profile);
+  const bool are_guessed = numbers.empty();
+  for (std::uint16_t number = 1; are_guessed && number <= kUsualRpdos; ++number) numbers.insert(number);
+  for (const auto number : numbers)
     heads.push_back({Pdo{PdoDirection::receive, number}.communication_index(), 1});
-  if (auto read = read_into(values, *session_, node_, heads); !read) return read;
+  if (auto read = read_into(values, *session_, node_, heads, are_guessed); !read) return read;
   for (const auto& pdo : pdos_of(values))
     if (pdo.is_valid()) counts.push_back({pdo.mapping_index(), 0});
   if (auto read = read_into(values, *session_, node_, counts); !read) return read;

@@ -67,16 +67,18 @@ Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration l
   return {};
 }
 
-Result<void> look_for_second(Session& session, std::span<const NodeLife> nodes) {
-  if (session.can() == nullptr) return {};
+Result<void> look_for_second(Session& session, std::span<NodeLife> nodes) {
   std::vector<NodeLife> unknown;
   for (const auto& one : nodes)
     if (!one.answers) unknown.push_back(one);
   if (const auto asked = ask_who_answers(session, unknown); !asked) return asked;
   std::vector<std::uint8_t> ids;
-  for (const auto& one : unknown)
+  for (const auto& one : unknown) {
+    *std::ranges::find(nodes, one.node, &NodeLife::node) = one;
     if (one.answers) ids.push_back(one.node);
-  return ids.empty() ? Result<void>() : settle_duplicates(session, ids, kBeforeMotion);
+  }
+  if (ids.empty() || session.can() == nullptr) return {};
+  return settle_duplicates(session, ids, kBeforeMotion);
 }
 
 Result<void> hear_who_lives(Session& session, std::span<NodeLife> nodes, Duration patience) {

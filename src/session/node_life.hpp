@@ -32,9 +32,9 @@ Result<void> wait_for_answers(Session& session, std::span<NodeLife> nodes, Durat
 /// `least`: as that of settle_duplicates(). Errc::refused, and errors of the bus.
 Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration least);
 
-/// After a reset, of those that answered no SDO request before it: asks them, and hears whether two drives
-/// have started. Not where frames are not heard. Errors of the bus.
-Result<void> look_for_second(Session& session, std::span<const NodeLife> nodes);
+/// After a start or a reset, of those that answered no SDO request before it: asks them, and hears whether two
+/// drives have started. Over a gateway, which lets no frame be heard, it asks only. Errors of the bus.
+Result<void> look_for_second(Session& session, std::span<NodeLife> nodes);
 
 /// Waits until of each that is not known to be alive a boot-up, a heartbeat or an answer to node guarding was
 /// heard, at most for `patience`, or for the heartbeat period of a node where that is longer. Errors of the

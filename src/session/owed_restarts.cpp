@@ -27,12 +27,13 @@ bool OwedRestarts::waits(const Node& node, ObjectAddress object) {
   return effect == od::Effect::restart;
 }
 
+bool OwedRestarts::has_restarted(const Node& node, Starts before, Starts now) {
+  return node.by_power ? now.power_ups != before.power_ups : now.restarts != before.restarts;
+}
+
 /// Behind a restart the drive goes by what it has stored.
 void OwedRestarts::settle(Node& node, Starts starts) {
-  const auto before = std::exchange(node.starts, starts);
-  const bool restarted =
-      node.by_power ? starts.power_ups != before.power_ups : starts.restarts != before.restarts;
-  if (!restarted) return;
+  if (!has_restarted(node, std::exchange(node.starts, starts), starts)) return;
   node.changed = node.changed || !node.values.empty();
   node.values.clear();
   node.seen.clear();
@@ -66,42 +67,45 @@ void OwedRestarts::take(Node& node, ObjectAddress object, const Bytes& now, bool
 
 void OwedRestarts::learn(std::uint8_t node, const drive::Profile& profile, bool registers, Starts starts) {
   auto& known = nodes_[node & 0x7FU];
-  if (known.profile == &profile) return;
+  if (profile.is_generic() || known.profile == &profile) return;
   known.profile = &profile;
   known.node_id =
       drive::place_of(profile, registers ? profile.rules.modbus.node_id : profile.rules.nmt.node_id);
   known.bitrate = drive::place_of(profile, profile.rules.nmt.bitrate);
   known.flash_switch = drive::place_of(profile, profile.rules.store.flash_switch);
   known.by_power = profile.rules.nmt.address_after == drive::NmtRules::Restart::power_cycle;
-  const auto before = known.unjudged_since;
-  const bool restarted =
-      known.by_power ? starts.power_ups != before.power_ups : starts.restarts != before.restarts;
-  for (const auto& written : std::exchange(known.unjudged, {})) {
-    if (restarted || !waits(known, written.object)) continue;
+  for (const auto& [value, since, reported] : std::exchange(known.unjudged, {})) {
+    if (has_restarted(known, since, starts) || !waits(known, value.object)) continue;
     settle(known, starts);
-    take(known, written.object, written.stored, true);
-    const auto owed = std::ranges::find(known.values, written.object, &OwedValue::object);
-    if (owed != known.values.end()) owed->kept = owed->kept || written.kept;
+    take(known, value.object, value.stored, true);
+    const auto owed = std::ranges::find(known.values, value.object, &OwedValue::object);
+    if (owed != known.values.end()) owed->kept = owed->kept || value.kept;
   }
 }
 
-std::vector<ObjectAddress> OwedRestarts::unjudged(std::uint8_t node, Starts starts) {
+/// Which restart is one of this drive, nobody knows yet: one by power is.
+void OwedRestarts::forget_unjudged(Node& node, Starts starts) {
+  std::erase_if(node.unjudged,
+                [&](const Unjudged& one) { return one.since.power_ups != starts.power_ups; });
+}
+
+std::vector<ObjectAddress> OwedRestarts::take_unjudged(std::uint8_t node, Starts starts) {
   auto& known = nodes_[node & 0x7FU];
-  if (starts.restarts != known.unjudged_since.restarts) known.unjudged.clear();
+  forget_unjudged(known, starts);
   std::vector<ObjectAddress> out;
-  for (const auto& written : known.unjudged) out.push_back(written.object);
+  for (auto& one : known.unjudged)
+    if (!std::exchange(one.reported, true)) out.push_back(one.value.object);
   return out;
 }
 
 void OwedRestarts::note_unjudged(Node& node, const Exchange& exchange, Starts starts) {
   if (exchange.written == nullptr) return;
   if (exchange.object.index == objects::kStoreIndex)
-    for (auto& value : node.unjudged) value.kept = true;
+    for (auto& one : node.unjudged) one.value.kept = true;
   if (exchange.object.index < kFirstOfVendor || exchange.object.index > kLastOfVendor) return;
-  if (starts.restarts != node.unjudged_since.restarts) node.unjudged.clear();
-  node.unjudged_since = starts;
-  std::erase_if(node.unjudged, [&](const OwedValue& value) { return value.object == exchange.object; });
-  node.unjudged.push_back({.object = exchange.object, .stored = *exchange.written});
+  forget_unjudged(node, starts);
+  std::erase_if(node.unjudged, [&](const Unjudged& one) { return one.value.object == exchange.object; });
+  node.unjudged.push_back({{.object = exchange.object, .stored = *exchange.written}, starts});
 }
 
 bool OwedRestarts::awaits_bitrate(std::uint8_t node) const {

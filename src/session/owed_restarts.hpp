@@ -35,12 +35,12 @@ struct Starts {
 class OwedRestarts {
  public:
   /// What the node is: its data say which values wait, among them its node-ID and bitrate. What was written
-  /// before is judged as well. `registers`: the node has its number on a Modbus line.
+  /// before is judged as well. A generic family says nothing. `registers`: the node has its number on a Modbus
+  /// line.
   void learn(std::uint8_t node, const drive::Profile& profile, bool registers, Starts starts);
-  /// Vendor objects that were written while nobody knew what the node is: whether they wait is not known.
-  std::vector<ObjectAddress> unjudged(std::uint8_t node, Starts starts);
-  /// They were reported.
-  void drop_unjudged(std::uint8_t node) { nodes_[node & 0x7FU].unjudged.clear(); }
+  /// Vendor objects that were written while nobody knew what the node is, and that were not told by this
+  /// before: whether they wait is not known.
+  std::vector<ObjectAddress> take_unjudged(std::uint8_t node, Starts starts);
   void on_exchange(const Exchange& exchange, Starts starts);
 
   /// What waits since an earlier session, the drive that it is kept of, whether only power ends it, and where
@@ -68,13 +68,17 @@ class OwedRestarts {
   bool take_changed(std::uint8_t node) { return std::exchange(nodes_[node].changed, false); }
 
  private:
+  struct Unjudged {
+    OwedValue value;
+    Starts since;
+    bool reported = false;
+  };
   struct Node {
     const drive::Profile* profile = nullptr;
     std::optional<ObjectAddress> node_id, bitrate, flash_switch;
     bool to_flash = false;  ///< Writes go to the memory that outlives power-off.
     std::vector<OwedValue> values;
-    std::vector<OwedValue> unjudged;
-    Starts unjudged_since;
+    std::vector<Unjudged> unjudged;
     std::map<ObjectAddress, Bytes> seen;  ///< Values in force, as far as they were read.
     std::optional<Identity> kept_of;
     bool by_power = false;
@@ -82,8 +86,10 @@ class OwedRestarts {
     bool changed = false;
   };
   static bool waits(const Node& node, ObjectAddress object);
+  static bool has_restarted(const Node& node, Starts before, Starts now);
   static void settle(Node& node, Starts starts);
   static void note_storing(Node& node, const Exchange& exchange);
+  static void forget_unjudged(Node& node, Starts starts);
   static void note_unjudged(Node& node, const Exchange& exchange, Starts starts);
   static void take(Node& node, ObjectAddress object, const Bytes& now, bool written);
 

@@ -65,7 +65,7 @@ drive::Topic exit_code_topic() {
   };
   row(0, "", "done");
   error(Errc::negative, "it ran, and the answer is no: a difference, a failed check, an incomplete result");
-  error(Errc::usage, "the request itself is wrong; nothing was sent");
+  error(Errc::usage, "the request itself is wrong; nothing was changed");
   error(Errc::bus, "the bus is missing, down or lost");
   error(Errc::timeout, "the node did not answer in time");
   error(Errc::sdo_abort, "the drive answered and refused");

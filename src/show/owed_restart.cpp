@@ -155,14 +155,16 @@ bool is_same(const session::Identity& kept, const session::Identity& now) {
 }
 
 /// Whether the drive of the record answers at the node-ID that waited: by its serial number, or one of its
-/// kind has started there.
+/// kind, as far as that is known, has started there.
 bool answers_at_next(session::Session& session, std::uint8_t node, const OwedRestart& owed,
                      bool has_started_there) {
   const auto next = next_node_id(owed.values, owed.node_id);
   if (!next || *next == node) return false;
   const auto there = session::read_identity(session, *next);
   if (!there) return false;
-  return is_same(owed.identity, *there) || (has_started_there && !is_other(owed.identity, *there));
+  const bool knows_kind = owed.identity.device_type || owed.identity.product_code;
+  return is_same(owed.identity, *there) ||
+         (has_started_there && knows_kind && !is_other(owed.identity, *there));
 }
 
 }  // namespace

@@ -327,6 +327,15 @@ TEST_F(OwedRestart, AWriteWithoutTheFamilyIsJudgedByTheIdentity) {
   EXPECT_FALSE(says("restart")) << "it acts at once: " << all();
 }
 
+TEST_F(OwedRestart, AWriteToADriveOfTheGenericFamilyIsJudgedByTheIdentity) {
+  constexpr const char* kPlace = "-n 1 -d cia402 -b sim:gsd600@1";
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_EQ(run(fmt::format("write 0x2003:2 {} --type u16 {}", i, kPlace)), 0) << all();
+    EXPECT_TRUE(says("node 1: written, in force after a restart")) << i << all();
+  }
+  EXPECT_TRUE(owes(kDrive)) << all();
+}
+
 TEST_F(OwedRestart, AnotherDriveAtTheNodeOwesNothing) {
   const show::OwedRestartFile file(folder / "state", "sim:gsd600@1", 1);
   session::Identity other;

@@ -235,7 +235,7 @@ def undo(state):
     t.type("undo\n")
     t.see(rf"Put back Pn0214 on node 1: {before} = \d+ Hz in place of 400 = 40 Hz\? \[y/N\] ")
     t.type("n\n")
-    t.see(r"not confirmed; nothing was sent[^>]*> ")
+    t.see(r"not confirmed; nothing was changed[^>]*> ")
     expect("the value after No", 400, value())
     t.type("undo\n")
     t.see(r"\[y/N\] ")
@@ -356,7 +356,7 @@ def log(state):
         text = written.read()
     stamp = r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{3}Z"
     for wanted in (rf"^{stamp} > param search --lang zh 速度环增益$", rf"^{stamp}   Pn0214 +速度环增益 1", rf"^{stamp} > nmt reset$",
-                   rf"^{stamp}   .*\[y/N\] $", rf"^{stamp} > n$", rf"^{stamp}   error: not confirmed; nothing was sent$"):
+                   rf"^{stamp}   .*\[y/N\] $", rf"^{stamp} > n$", rf"^{stamp}   error: not confirmed; nothing was changed$"):
         if not re.search(wanted, text, re.MULTILINE):
             failures.append(f"the log has no {wanted!r}: {text!r}")
     times = [datetime.datetime.fromisoformat(found[1]) for found in re.finditer(r"^(\S+)Z (?:  .*\[y/N\] |> n)$", text, re.MULTILINE)]

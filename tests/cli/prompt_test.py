@@ -35,7 +35,7 @@ with tempfile.TemporaryDirectory() as state:
     t.type("nmt reset\n")
     t.see(r"\[y/N\] ")
     t.type("n\n")
-    t.see(r"not confirmed; nothing was sent[^>]*> ")
+    t.see(r"not confirmed; nothing was changed[^>]*> ")
     t.type("nmt reset --wait\n")
     t.see(r"\[y/N\] ")
     t.type("y\n")

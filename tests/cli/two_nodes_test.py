@@ -80,6 +80,11 @@ for number, (first, second) in enumerate([("gsd600@1", "gsd600@1"), ("gsd600@1",
         for words in (["nmt", "reset", "--yes"], ["nmt", "reset-comm", "--yes"]):
             answer = run(bus, *words, "-n", "1")
             check(what + f"{' '.join(words)} is refused while they are stopped\n{answer.stdout}{answer.stderr}", answer.returncode == 8)
+        for option in ([], ["--wait"]):
+            run(bus, "nmt", "stop", "-n", "1")
+            answer = run(bus, "nmt", "start", *option, "-n", "1")
+            check(what + f"nmt start {option} of two stopped ones is an error\n{answer.stdout}{answer.stderr}",
+                  answer.returncode == 8 and "two nodes answer" in answer.stderr)
         run(bus, "nmt", "preop", "-n", "1")
         answer = run(bus, "backup", "two-nodes.json", "-n", "1", "-d", family)
         check(what + f"no file is made of both\n{answer.stderr}",

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -31,6 +32,7 @@ class TouchedBus final : public can::Bus {
  public:
   explicit TouchedBus(sim::SimBus& bus) : bus_(&bus) {}
   std::function<void(can::Frame&)> on_receive;  ///< May be empty.
+  std::deque<can::Frame> injected;              ///< Of somebody else; they come before what waits.
   std::function<std::uint64_t()> came_of_fd;    ///< May be empty.
   std::uint64_t fd_frames() const override { return came_of_fd ? came_of_fd() : 0; }
 
@@ -38,6 +40,11 @@ class TouchedBus final : public can::Bus {
   TimePoint next_event() const override { return bus_->next_event(); }
   Result<void> send(const can::Frame& frame) override { return bus_->send(frame); }
   Result<std::optional<can::Frame>> receive(TimePoint deadline) override {
+    if (!injected.empty()) {
+      const auto first = injected.front();
+      injected.pop_front();
+      return first;
+    }
     auto frame = bus_->receive(deadline);
     if (frame && *frame && on_receive) on_receive(**frame);
     return frame;

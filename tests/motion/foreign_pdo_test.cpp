@@ -98,6 +98,16 @@ TEST_P(ForeignPdo, WhatIsMappedToNothingOfTheMotionEndsNone) {
   EXPECT_TRUE(done.outcome) << done.outcome.error().message;
 }
 
+/// By what another master could write is not known then.
+TEST_P(ForeignPdo, AMappingThatIsNotAnsweredKeepsTheDriveFromBeingEnabled) {
+  map(0x60FF, 32);
+  bench.bus->swallows = [](const std::string& frame) { return frame.starts_with("601#40001600"); };
+  const auto done = bench.jog(jog_for("60rpm", 1s));
+  ASSERT_FALSE(done.outcome);
+  EXPECT_EQ(done.outcome.error().code, Errc::timeout);
+  EXPECT_FALSE(bench.energised());
+}
+
 INSTANTIATE_TEST_SUITE_P(Families, ForeignPdo,
                          testing::Values(Case{"cia402", 10000}, Case{"ts", 10000}, Case{"gsd600", 131072}),
                          [](const auto& one) { return std::string(one.param.family); });

@@ -88,6 +88,15 @@ TEST_F(OwedRestartKept, StaysWhereNobodyAnswersOrAnotherKindDoes) {
   EXPECT_TRUE(waits());
 }
 
+/// A drive that starts at the node-ID that waits may be any, where nothing is known of the one that is kept.
+TEST_F(OwedRestartKept, AStartAtTheNewNodeIdCountsOnlyOfAKnownKind) {
+  open("gsd600@5", "sim:one");
+  auto kept = owed({kNodeIdParameter, Bytes{1, 0}, Bytes{5, 0}, true});
+  EXPECT_EQ(owing(*session, 1, kept, true), Owing::over);
+  kept.identity.device_type.reset();
+  EXPECT_EQ(owing(*session, 1, kept, true), Owing::waits);
+}
+
 TEST_F(OwedRestartKept, IsOverWhereTheSameDriveAnswersAtItsNewBitrate) {
   struct Case {
     std::uint32_t bitrate;
