@@ -7,6 +7,7 @@
 
 #include "base/text.hpp"
 #include "cli/shell.hpp"
+#include "drive/topics.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
