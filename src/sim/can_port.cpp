@@ -35,6 +35,13 @@ canopen::SdoServer::Options server_options(const drive::Rules& rules) {
   return options;
 }
 
+/// These CAN-IDs are restricted (CiA 301, 7.3.5): no PDO, no EMCY and no SYNC has them.
+bool is_sdo_of_other(const can::Frame& frame, std::uint8_t node) {
+  if (frame.extended || frame.remote || frame.error) return false;
+  const auto channel = frame.id & ~0x7FU;
+  return (channel == canopen::kSdoRequest || channel == canopen::kSdoAnswer) && (frame.id & 0x7FU) != node;
+}
+
 }  // namespace
 
 CanPort::CanPort(DriveModel& model)
@@ -49,7 +56,7 @@ void CanPort::on_frame(const can::Frame& frame, TimePoint now) {
   model_->set_time(now);
   if (faults_.silent || boot_at_ != kNever) return;
   on_lss(frame, now);
-  if (is_unconfigured()) return;
+  if (is_unconfigured() || is_sdo_of_other(frame, model_->node())) return;
   if (const auto message = canopen::parse_nmt(frame)) {
     if (message->node == 0 || message->node == model_->node()) on_nmt(message->command, now);
     return;
