@@ -34,12 +34,12 @@ class GatewayServer {
     bool writes = false;  ///< Else a write and an NMT command are refused with 102.
     std::string version;  ///< Of this program, for `info version`: `0.1`.
     /// A line for who looks on; may be empty.
-    std::function<void(std::string_view line)> tell;
+    std::function<void(std::string_view line)> tell = {};
     /// Whether a write energises a drive, or sets it in motion, besides by 6040h; may be empty. Asked once
     /// for each write, before it is sent.
-    std::function<bool(std::uint8_t node, ObjectAddress object, ByteSpan data)> energises;
+    std::function<bool(std::uint8_t node, ObjectAddress object, ByteSpan data)> energises = {};
     /// Takes the power of these drives, and returns when that is done or told; may be empty.
-    std::function<void(const std::set<std::uint8_t>& nodes)> stop;
+    std::function<void(const std::set<std::uint8_t>& nodes)> stop = {};
   };
   /// A client with more answers that it has not read waits for its next one.
   static constexpr std::size_t kMostOutput = 65'536;

@@ -9,7 +9,7 @@
 namespace servoctl::od {
 namespace {
 
-struct Row {
+struct DataTypeRow {
   DataType type;
   const char* name;
   std::uint16_t code;
@@ -18,7 +18,7 @@ struct Row {
 };
 
 /// CiA 301, table 44.
-constexpr Row kTable[] = {
+constexpr DataTypeRow kTable[] = {
     {DataType::boolean, "bool", 0x01, 1, 'u'},  {DataType::i8, "i8", 0x02, 1, 's'},
     {DataType::i16, "i16", 0x03, 2, 's'},       {DataType::i32, "i32", 0x04, 4, 's'},
     {DataType::u8, "u8", 0x05, 1, 'u'},         {DataType::u16, "u16", 0x06, 2, 'u'},

@@ -16,9 +16,9 @@ class QuickStop : public DriveModelTest {
  protected:
   /// Turns at a steady speed, with 605Ah and ramps that stop it in `slow` and `quick` seconds.
   void turn(unsigned option, double speed, double slow, double quick) {
-    if (has(kOption)) ASSERT_EQ(write(kOption, option), 0U);
-    if (has(kDeceleration)) ASSERT_EQ(write_amount(kDeceleration, speed / slow), 0U);
-    if (has(kQuickStopDeceleration)) ASSERT_EQ(write_amount(kQuickStopDeceleration, speed / quick), 0U);
+    EXPECT_EQ(has(kOption) ? write(kOption, option) : 0U, 0U);
+    EXPECT_EQ(has(kDeceleration) ? write_amount(kDeceleration, speed / slow) : 0U, 0U);
+    EXPECT_EQ(has(kQuickStopDeceleration) ? write_amount(kQuickStopDeceleration, speed / quick) : 0U, 0U);
     enable();
     ASSERT_EQ(write_amount(kTargetVelocity, speed), 0U);
     run(10s);
