@@ -12,7 +12,8 @@ foreach(lang en zh)
 endforeach()
 
 # Debian packages whose code is in the program: headers in any, archives in the one that is shipped.
-set(linked_packages libcli11-dev,nlohmann-json3-dev,libexpected-dev,libtomlplusplus-dev,libfmt-dev)
+string(REGEX MATCH "^[0-9]+\\.[0-9]+" boost ${Boost_VERSION})
+set(linked_packages libcli11-dev,nlohmann-json3-dev,libexpected-dev,libtomlplusplus-dev,libfmt-dev,libboost${boost}-dev)
 if(SERVOCTL_STATIC)
   string(REGEX MATCH "^[0-9]+" major ${CMAKE_CXX_COMPILER_VERSION})
   string(APPEND linked_packages ,libpugixml-dev,libnl-3-dev,zlib1g-dev,libstdc++-${major}-dev,libc6-dev)

@@ -1,8 +1,6 @@
 #include "session/interleave.hpp"
 
-#include <pthread.h>
 #include <algorithm>
-#include <csignal>
 #include <utility>
 
 namespace servoctl::session {
@@ -10,23 +8,6 @@ namespace {
 
 /// As that of Session::step(): whoever cancels by a simulated clock is asked so often.
 constexpr Duration kLongestStep = std::chrono::milliseconds(250);
-
-/// While it lives this thread, and every thread that it starts, takes no signal: they end the wait of the
-/// pump.
-class NoSignals {
- public:
-  NoSignals() {
-    sigset_t all;
-    sigfillset(&all);
-    pthread_sigmask(SIG_SETMASK, &all, &before_);
-  }
-  NoSignals(const NoSignals&) = delete;
-  NoSignals& operator=(const NoSignals&) = delete;
-  ~NoSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_{};
-};
 
 }  // namespace
 
@@ -38,11 +19,6 @@ Interleave::Interleave(Session& session, std::span<const Job> jobs) : session_(&
     lane.options.progress = {};
     lane.options.list_progress = {};
   }
-}
-
-Interleave::~Interleave() {
-  for (const auto& lane : lanes_)
-    if (lane->thread.joinable()) lane->thread.join();
 }
 
 void Interleave::run() {
@@ -64,9 +40,16 @@ void Interleave::run() {
 }
 
 void Interleave::start(Lane& lane) {
+  const auto body = [&lane] {
+    try {
+      (*lane.job)();
+    } catch (...) {
+      lane.thrown = std::current_exception();
+    }
+    lane.ended = true;
+  };
   try {
-    const NoSignals none;
-    lane.thread = std::thread([this, &lane] { body(lane); });
+    lane.fiber.emplace(body);
   } catch (...) {
     lane.thrown = std::current_exception();
     lane.ended = true;
@@ -76,32 +59,11 @@ void Interleave::start(Lane& lane) {
   give_turn(lane);
 }
 
-void Interleave::body(Lane& lane) {
-  {
-    std::unique_lock lock(mutex_);
-    lane.wake.wait(lock, [&] { return turn_ == &lane; });
-  }
-  try {
-    (*lane.job)();
-  } catch (...) {
-    lane.thrown = std::current_exception();
-  }
-  lane.ended = true;
-  const std::lock_guard lock(mutex_);
-  turn_ = nullptr;
-  pump_.notify_one();
-}
-
 /// Lets a job run until it waits or has ended.
 void Interleave::give_turn(Lane& lane) {
   std::swap(session_->options_, lane.options);
   running_ = &lane;
-  {
-    std::unique_lock lock(mutex_);
-    turn_ = &lane;
-    lane.wake.notify_one();
-    pump_.wait(lock, [this] { return turn_ == nullptr; });
-  }
+  lane.fiber->resume();
   running_ = nullptr;
   std::swap(session_->options_, lane.options);
   if (!lane.ended) return;
@@ -114,10 +76,7 @@ Result<bool> Interleave::park(TimePoint deadline, const std::function<bool()>& c
   auto& lane = *running_;
   lane.deadline = deadline;
   lane.concerns = concerns ? &concerns : nullptr;
-  std::unique_lock lock(mutex_);
-  turn_ = nullptr;
-  pump_.notify_one();
-  lane.wake.wait(lock, [&] { return turn_ == &lane; });
+  lane.fiber->give_way();
   return std::move(lane.answer);
 }
 

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <condition_variable>
 #include <exception>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
-#include <thread>
 #include <vector>
 
+#include "session/fiber.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
@@ -19,8 +17,8 @@ namespace servoctl::session {
 using Job = std::function<void()>;
 
 /// Runs several jobs side by side on one session: while one waits for its drive the others go on. Each has a
-/// thread, but only one of them, or the pump, runs at a time, so none needs a lock; a job gives way where it
-/// waits (Session::step() and what stands on it), nowhere else.
+/// stack of its own in the one thread; a job gives way where it waits (Session::step() and what stands on it),
+/// nowhere else.
 ///
 /// What arrives wakes those whom it concerns; a lost bus is told to all that wait, and so is Ctrl-C, but for
 /// those that are deaf to it (Deaf). Each job has options of its own, which begin as those of the session,
@@ -32,7 +30,6 @@ class Interleave {
   Interleave(Session& session, std::span<const Job> jobs);
   Interleave(const Interleave&) = delete;
   Interleave& operator=(const Interleave&) = delete;
-  ~Interleave();
 
   /// Returns when all jobs have ended. In a job of another one, which has the pump already, they run one
   /// after the other.
@@ -44,8 +41,7 @@ class Interleave {
   struct Lane {
     const Job* job = nullptr;
     Options options;  ///< Its own, while it does not run.
-    std::thread thread;
-    std::condition_variable wake;
+    std::optional<Fiber> fiber;
     TimePoint deadline = kNever;
     const std::function<bool()>* concerns = nullptr;  ///< Null: every arrival does.
     Result<bool> answer = false;
@@ -54,12 +50,11 @@ class Interleave {
   };
 
   bool in_job() const { return running_ != nullptr; }
-  /// In the thread of a job: the others go on until something that concerns it has arrived, or the deadline
+  /// In a job: the others go on until something that concerns it has arrived, or the deadline
   /// has passed.
   Result<bool> park(TimePoint deadline, const std::function<bool()>& concerns);
 
   void start(Lane& lane);
-  void body(Lane& lane);
   void give_turn(Lane& lane);
   void pump();
   Result<bool> step_until(TimePoint deadline);
@@ -73,10 +68,7 @@ class Interleave {
   std::size_t open_ = 0;
   bool taken_in_ = false;  ///< A job took in an arrival itself.
   TimePoint seen_{};       ///< Of the last step of the pump.
-  std::mutex mutex_;
-  std::condition_variable pump_;
-  Lane* turn_ = nullptr;     ///< Who may run; null: the pump. Under the mutex.
-  Lane* running_ = nullptr;  ///< The same, as who runs sees it.
+  Lane* running_ = nullptr;  ///< Null: the pump.
   std::exception_ptr broken_;
 };
 

@@ -45,14 +45,14 @@ dpkg-deb -x "$deb" root
 dpkg-deb -e "$deb" control
 [ "$(dpkg-deb -f "$deb" Version)" = "$version-1" ] || fail "the .deb is $(dpkg-deb -f "$deb" Version), the program $version"
 depends=$(dpkg-deb -f "$deb" Depends)
-for library in libc6 libfmt libnl-3 libpugixml libstdc++6 zlib1g; do
+for library in libboost-context libc6 libfmt libnl-3 libpugixml libstdc++6 zlib1g; do
   grep -q "$library" <<<"$depends" || fail "the .deb does not depend on $library: $depends"
 done
 has .deb root/usr "${common[@]}" share/zsh/vendor-completions/_servoctl share/doc/servoctl/README.Debian share/doc/servoctl/changelog.Debian.gz
 works .deb "$work/root/usr/bin/servoctl"
 gzip -dc root/usr/share/man/man1/servoctl.1.gz | cmp -s - <(root/usr/bin/servoctl man) || fail "the manual page is not that of the program"
 gzip -dc root/usr/share/man/zh_CN/man1/servoctl.1.gz | cmp -s - <(root/usr/bin/servoctl man --lang zh) || fail "nor is the Chinese one"
-for library in libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus; do
+for library in libboost libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus; do
   grep -q "^$library.*-dev (source: .* .*)" root/usr/share/doc/servoctl/copyright || fail "no licence of $library"
 done
 while IFS= read -r terms; do
@@ -73,7 +73,7 @@ fi
 mkdir -p 'an other place/ü'
 tar -xzf packed/*.tar.gz -C 'an other place/ü' --strip-components=1
 has tarball "$work/an other place/ü" "${common[@]}" share/zsh/site-functions/_servoctl share/doc/servoctl/licenses/LGPL-2.1
-for library in libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus libpugixml libnl-3 zlib1g libstdc++ libc6; do
+for library in libboost libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus libpugixml libnl-3 zlib1g libstdc++ libc6; do
   grep -q "^$library.*-dev (source: .* .*)" 'an other place/ü/share/doc/servoctl/copyright' || fail "no licence of $library in the tarball"
 done
 works tarball "$work/an other place/ü/bin/servoctl"
