@@ -163,8 +163,7 @@ Result<void> refuse_stopped(const session::Session& session, const Before& entry
 Result<void> look_before(Context& context, NmtCommand command, std::vector<Before>& nodes) {
   auto& session = *context.session;
   if (!begins(command)) return {};
-  const auto least = is_reset(command) ? session::kBeforeMotion : session::kBeforeWrites;
-  if (const auto single = session::hold_single(session, nodes, least); !single) return single;
+  if (const auto single = session::hold_single(session, nodes); !single) return single;
   if (!is_reset(command)) return {};
   if (const auto heard = session::hear_who_lives(session, nodes, kGuardPatience); !heard) return heard;
   for (const auto& entry : nodes)

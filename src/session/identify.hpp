@@ -36,7 +36,8 @@ inline constexpr Duration kBeforeWrites = std::chrono::milliseconds(20);
 inline constexpr Duration kThoroughly = std::chrono::milliseconds(20);
 /// Where nothing is asked but who is there.
 inline constexpr Duration kScanning = std::chrono::milliseconds(100);
-/// Before a motor gets power, and before what is stored or restarts a drive: a slow one is heard as well.
+/// Before a motor gets power, and before what is stored, or starts or restarts a drive: a slow one is heard as
+/// well.
 inline constexpr Duration kBeforeMotion = std::chrono::milliseconds(250);
 
 /// Takes in what a second node of the same number may still answer to what was asked: for twice the time that

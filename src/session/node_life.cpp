@@ -57,11 +57,11 @@ Result<void> wait_for_answers(Session& session, std::span<NodeLife> nodes, Durat
   return {};
 }
 
-Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration least) {
+Result<void> hold_single(Session& session, std::span<NodeLife> nodes) {
   if (const auto asked = ask_who_answers(session, nodes); !asked) return asked;
   std::vector<std::uint8_t> ids;
   for (const auto& one : nodes) ids.push_back(one.node);
-  if (const auto heard = settle_duplicates(session, ids, least); !heard) return heard;
+  if (const auto heard = settle_duplicates(session, ids, kBeforeMotion); !heard) return heard;
   for (const auto node : ids)
     if (const auto single = refuse_duplicate(session, node); !single) return single;
   return {};

@@ -29,8 +29,8 @@ Result<void> ask_who_answers(Session& session, std::span<NodeLife> nodes);
 Result<void> wait_for_answers(Session& session, std::span<NodeLife> nodes, Duration patience);
 
 /// Asks them, and hears whether two drives have one node-ID: what starts or resets a node goes to one drive.
-/// `least`: as that of settle_duplicates(). Errc::refused, and errors of the bus.
-Result<void> hold_single(Session& session, std::span<NodeLife> nodes, Duration least);
+/// Errc::refused, and errors of the bus.
+Result<void> hold_single(Session& session, std::span<NodeLife> nodes);
 
 /// After a start or a reset, of those that answered no SDO request before it: asks them, and hears whether two
 /// drives have started. Over a gateway, which lets no frame be heard, it asks only. Errors of the bus.
