@@ -177,7 +177,7 @@ Value planned_lss_scan(std::span<const session::LssFound> found, std::span<const
     std::vector<canopen::LssRequest> requests{canopen::lss_set_node(nodes[i])};
     if (keep) requests.push_back(canopen::lss_store());
     const auto frames = lss_planned_frames({found[i].address}, requests);
-    for (const auto& row : std::get<report::Table>(frames.data()).rows)
+    for (const auto& row : frames.table()->rows)
       table.rows.push_back({nodes[i], row.front()});
   }
   return Value(std::move(table));

@@ -28,7 +28,7 @@ using report::Value;
 /// The table of a comparison, its sides called as they are here.
 Table table_of(const settings::Comparison& comparison, std::string_view a, std::string_view b) {
   for (const auto& field : comparison.record) {
-    const auto* found = std::get_if<Table>(&field.value.data());
+    const auto* found = field.value.table();
     if (field.key != "differences" || found == nullptr) continue;
     auto table = *found;
     for (auto& column : table.columns) {

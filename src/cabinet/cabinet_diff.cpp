@@ -171,7 +171,7 @@ class CabinetDifference {
     const auto comparison = settings::compare(&profile, a, b, true, desk_->chinese);
     compared_ += comparison.compared;
     for (const auto& field : comparison.record) {
-      const auto* rows = std::get_if<Table>(&field.value.data());
+      const auto* rows = field.value.table();
       if (field.key != "differences" || rows == nullptr) continue;
       for (const auto& row : rows->rows) {
         // Object, name, and the two values as text: see settings::compare().

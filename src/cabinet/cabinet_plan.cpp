@@ -161,7 +161,7 @@ void add_text(const PlannedAxis& look, Record& out) {
                                            : fmt::format("nothing to write; needs a restart ({})",
                                                          fmt::join(look.plan->owed, ", ")),
                    Show::text, title});
-  } else if (const auto* table = std::get_if<Table>(&look.plan->differences.data())) {
+  } else if (const auto* table = look.plan->differences.table()) {
     auto shown = *table;
     for (const auto& need : look.plan->needs) shown.below.push_back(sentence(need));
     out.push_back({look.axis->name, std::move(shown), Show::text, title});

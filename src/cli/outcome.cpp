@@ -7,6 +7,7 @@
 #include "base/text.hpp"
 #include "report/chinese_marks.hpp"
 #include "report/chinese_value.hpp"
+#include "report/json_writer.hpp"
 #include "report/text_kinds.hpp"
 #include "show/records.hpp"
 
@@ -45,17 +46,33 @@ Value shown(const Outcome& outcome) {
   return done ? outcome.result : report::chinese_value(outcome.result, &outcome.names);
 }
 
-report::Record envelope(const Outcome& outcome) {
-  report::Record out{{"servoctl", 1},
-                     {"command", report::text_or_null(outcome.command)},
-                     {"ok", outcome.errors.empty()},
-                     {"bus", outcome.uses_bus ? report::text_or_null(outcome.settings.bus) : Value()}};
-  if (!outcome.errors.empty()) out.push_back({"error", error_record(outcome)});
-  out.push_back({"result", outcome.result});
-  report::List notices;
-  for (const auto& notice : outcome.notices) notices.emplace_back(notice);
-  out.push_back({"notices", std::move(notices)});
-  return out;
+/// The document of a line. A result that is written already may be of hundreds of megabytes: it goes out as it
+/// is, between what stands before and behind it.
+void show_document(Console& console, const Outcome& outcome) {
+  std::string out;
+  report::JsonWriter json(out);
+  json.begin_record();
+  json.member("servoctl", 1);
+  json.text_or_null("command", outcome.command);
+  json.member("ok", outcome.errors.empty());
+  json.text_or_null("bus", outcome.uses_bus ? std::string_view(outcome.settings.bus) : std::string_view());
+  if (!outcome.errors.empty()) json.member("error", error_record(outcome));
+  json.key("result");
+  if (const auto* written = std::get_if<report::Written>(&outcome.result.data());
+      written != nullptr && !written->json.empty()) {
+    const std::string_view body = written->json;
+    console.json(out);
+    console.json(body.substr(0, body.size() - 1));
+    out = body.back();  // By it the writer knows where it is.
+  } else {
+    json.value(outcome.result);
+  }
+  json.key("notices");
+  json.begin_list();
+  for (const auto& notice : outcome.notices) json.value(notice);
+  json.end_list();
+  json.end_record();
+  console.json(out + "\n");
 }
 
 /// Whether both are one column: a key stands once in a record, whatever the text of either shows.
@@ -91,8 +108,8 @@ void add_rows(Table& to, const Table& from) {
 Value joined(Value all, Value more) {
   if (all.is_null()) return more;
   if (more.is_null()) return all;
-  auto* table = std::get_if<Table>(&all.data());
-  const auto* rows = std::get_if<Table>(&more.data());
+  auto* table = all.table();
+  const auto* rows = more.table();
   if (table != nullptr && rows != nullptr) {
     add_rows(*table, *rows);
     return all;
@@ -130,7 +147,7 @@ std::string text_of(const Outcome& outcome, std::size_t width) {
 
 int show(Console& console, const Outcome& outcome) {
   if (outcome.settings.json) {
-    console.json(report::to_json(envelope(outcome)) + "\n");
+    show_document(console, outcome);
   } else {
     console.out(text_of(outcome, console.width()));
     show_remarks(console, outcome);

@@ -60,7 +60,7 @@ void put_bus_into(Value& value, const std::string& bus) {
     record->insert(record->begin(), {"bus", bus});
   if (auto* list = std::get_if<List>(&value.data()))
     for (auto& one : *list) put_bus_into(one, bus);
-  if (auto* table = std::get_if<Table>(&value.data())) {
+  if (auto* table = value.table()) {
     table->columns.insert(table->columns.begin(), {"bus"});
     for (auto& row : table->rows) row.insert(row.begin(), bus);
     for (auto& document : table->documents) put_bus_into(document, bus);

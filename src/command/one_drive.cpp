@@ -10,7 +10,7 @@ using report::Show;
 using report::Value;
 
 Value of_one_drive(Value value) {
-  if (auto* table = std::get_if<report::Table>(&value.data()))
+  if (auto* table = value.table())
     for (auto& column : table->columns)
       if (column.key == "node") column.show = Show::json;
   auto* list = std::get_if<List>(&value.data());

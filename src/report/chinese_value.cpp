@@ -24,8 +24,8 @@ class ChineseValue {
     if (auto* list = std::get_if<List>(&value.data()))
       for (auto& element : *list) element = of(std::move(element));
     if (auto* record = std::get_if<Record>(&value.data())) put(*record);
-    if (auto* table = std::get_if<Table>(&value.data())) put(*table);
-    if (auto* plot = std::get_if<Plot>(&value.data()))
+    if (auto* table = value.table()) put(*table);
+    if (auto* plot = value.plot())
       for (auto& series : plot->series) series.name = word(series.name);
     return value;
   }

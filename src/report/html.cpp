@@ -59,8 +59,8 @@ table.signatures td { height: 4rem; vertical-align: bottom; border-bottom: 1px s
 bool is_block(const Value& value) {
   if (const auto* list = std::get_if<List>(&value.data()))
     return std::any_of(list->begin(), list->end(), is_block);
-  return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data()) ||
-         std::holds_alternative<Plot>(value.data());
+  return value.table() != nullptr || std::holds_alternative<Record>(value.data()) ||
+         value.plot() != nullptr;
 }
 
 bool is_nothing(const Value& value) {
@@ -81,9 +81,9 @@ class Writer {
 
   /// `level` is that of the headings it may need.
   void write(const Value& value, int level) {
-    if (const auto* table = std::get_if<Table>(&value.data())) return write_table(*table);
+    if (const auto* table = value.table()) return write_table(*table);
     if (const auto* record = std::get_if<Record>(&value.data())) return write_record(*record, level);
-    if (const auto* plot = std::get_if<Plot>(&value.data())) {
+    if (const auto* plot = value.plot()) {
       out_ += *translate_ ? svg_plot(plot->series, (*translate_)("no samples")) : svg_plot(plot->series);
       return;
     }

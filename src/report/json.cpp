@@ -70,6 +70,10 @@ struct ToJson {
   void operator()(const T& scalar) const {
     json.value(scalar);
   }
+  template <class T>
+  void operator()(const Boxed<T>& boxed) const {
+    boxed.get() != nullptr ? (*this)(*boxed.get()) : json.null();
+  }
   void operator()(const List& l) const {
     json.begin_list();
     for (const auto& v : l) json.value(v);

@@ -43,8 +43,8 @@ std::string line_text(const Value& value) {
                             if (f.show != Show::json) append(out, f.key + "=" + line_text(f.value));
                           return out;
                         },
-                        [](const Table&) { return std::string(); },
-                        [](const Plot&) { return std::string(); },
+                        [](const Boxed<Table>&) { return std::string(); },
+                        [](const Boxed<Plot>&) { return std::string(); },
                         [](const Written& w) { return w.json; },
                     },
                     value.data());
@@ -53,8 +53,8 @@ std::string line_text(const Value& value) {
 namespace {
 
 bool has_own_lines(const Value& value) {
-  return std::holds_alternative<Table>(value.data()) || std::holds_alternative<Record>(value.data()) ||
-         std::holds_alternative<Plot>(value.data());
+  return value.table() != nullptr || std::holds_alternative<Record>(value.data()) ||
+         value.plot() != nullptr;
 }
 
 std::string record_text(const Record& record, std::size_t width) {
@@ -93,9 +93,9 @@ std::string lines_below(const Table& table, std::size_t width) {
 
 std::string to_text(const Value& value, std::size_t width) {
   if (value.is_null()) return {};
-  if (const auto* table = std::get_if<Table>(&value.data()))
+  if (const auto* table = value.table())
     return table->json_only ? std::string() : table_text(*table, width) + lines_below(*table, width);
-  if (const auto* plot = std::get_if<Plot>(&value.data()))
+  if (const auto* plot = value.plot())
     return braille_plot(plot->series, width == 0 ? kPlotWidth : std::min(width, kPlotWidth));
   if (const auto* record = std::get_if<Record>(&value.data())) return record_text(*record, width);
   if (const auto* list = std::get_if<List>(&value.data())) {

@@ -19,9 +19,24 @@ Value::Value(double number) : data_(number) {}
 Value::Value(Hex number) : data_(number) {}
 Value::Value(List list) : data_(std::move(list)) {}
 Value::Value(Record record) : data_(std::move(record)) {}
-Value::Value(Table table) : data_(std::move(table)) {}
-Value::Value(Plot plot) : data_(std::move(plot)) {}
+Value::Value(Table table) : data_(Boxed(std::move(table))) {}
+Value::Value(Plot plot) : data_(Boxed(std::move(plot))) {}
 Value::Value(Written json) : data_(std::move(json)) {}
+
+namespace {
+
+template <class T, class Data>
+auto* unboxed(Data& data) {
+  auto* box = std::get_if<Boxed<T>>(&data);
+  return box == nullptr ? nullptr : box->get();
+}
+
+}  // namespace
+
+const Table* Value::table() const { return unboxed<Table>(data_); }
+Table* Value::table() { return unboxed<Table>(data_); }
+const Plot* Value::plot() const { return unboxed<Plot>(data_); }
+Plot* Value::plot() { return unboxed<Plot>(data_); }
 
 namespace {
 
@@ -54,7 +69,7 @@ std::string text(const Value* value) {
 }  // namespace
 
 Result<Plot> plot_of(const Value& value) {
-  if (const auto* plot = std::get_if<Plot>(&value.data())) return *plot;
+  if (const auto* plot = value.plot()) return *plot;
   const auto* list = std::get_if<List>(&value.data());
   Plot out;
   for (const auto& one : list == nullptr ? List{Value()} : *list) {

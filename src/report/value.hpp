@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/boxed.hpp"
 #include "base/result.hpp"
 #include "base/series.hpp"
 
@@ -58,8 +59,9 @@ struct Plot {
 /// into characters.
 class Value {
  public:
+  /// The two that are large and few are elsewhere: of most values there are tens of thousands.
   using Data = std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, Hex, List,
-                            Record, Table, Plot, Written>;
+                            Record, Boxed<Table>, Boxed<Plot>, Written>;
   // Defined where Field is complete.
   Value();
   Value(const Value&);
@@ -85,6 +87,11 @@ class Value {
 
   const Data& data() const { return data_; }
   Data& data() { return data_; }
+  /// Null where it is something else.
+  const Table* table() const;
+  Table* table();
+  const Plot* plot() const;
+  Plot* plot();
   bool is_null() const { return std::holds_alternative<std::monostate>(data_); }
   bool is_number() const {
     return std::holds_alternative<std::int64_t>(data_) || std::holds_alternative<std::uint64_t>(data_) ||

@@ -208,9 +208,9 @@ Result<report::Value> planned_address(show::Desk& desk, std::span<const AddressC
     session::Rehearsal rehearsal;
     if (const auto done = rehearse(desk, change, unlock, rehearsal); !done) return fail(done.error());
     auto part = show::planned_messages(desk, messages_to(change, rehearsal));
-    auto* more = std::get_if<report::Table>(&part.data());
+    auto* more = part.table();
     if (more != nullptr) add_restart(change, *more);
-    auto* table = std::get_if<report::Table>(&out.data());
+    auto* table = out.table();
     if (table == nullptr || more == nullptr) {
       out = std::move(part);
       continue;

@@ -126,7 +126,7 @@ void AxisNames::put_into(Value& value) const {
   if (auto* record = std::get_if<Record>(&value.data())) return put_into(*record);
   if (auto* list = std::get_if<List>(&value.data()))
     for (auto& one : *list) put_into(one);
-  auto* table = std::get_if<Table>(&value.data());
+  auto* table = value.table();
   if (table == nullptr) return;
   for (auto& row : table->rows)
     for (auto& cell : row) put_into(cell);

@@ -50,7 +50,7 @@ class Saved {
     EXPECT_TRUE(answer) << answer.error().message;
     std::vector<std::string> out;
     if (!answer) return out;
-    const auto* table = std::get_if<report::Table>(&report::find(*answer, "differences")->data());
+    const auto* table = report::find(*answer, "differences")->table();
     for (const auto& row : table->rows)
       out.push_back(std::get<std::string>(row[0].data()) + " " + std::get<std::string>(row[2].data()));
     EXPECT_EQ(out.empty(), fleet.desk.errors.empty());

@@ -155,12 +155,12 @@ class Fleet {
   }
   /// What the answer says of an axis.
   static std::string result_of(const report::Value& answer, std::size_t axis) {
-    const auto& table = std::get<report::Table>(answer.data());
+    const auto& table = *answer.table();
     return std::get<std::string>(table.rows.at(axis).at(4).data());
   }
   static std::vector<std::string> results_of(const report::Value& answer) {
     std::vector<std::string> out;
-    for (std::size_t i = 0; i < std::get<report::Table>(answer.data()).rows.size(); ++i)
+    for (std::size_t i = 0; i < answer.table()->rows.size(); ++i)
       out.push_back(result_of(answer, i));
     return out;
   }

@@ -14,7 +14,7 @@ namespace servoctl::cabinet {
 /// The objects that a table of a plan is about.
 inline std::set<std::string> objects_of(const report::Value& table) {
   std::set<std::string> out;
-  if (const auto* rows = std::get_if<report::Table>(&table.data()))
+  if (const auto* rows = table.table())
     for (const auto& row : rows->rows) out.insert(std::get<std::string>(row.front().data()));
   return out;
 }

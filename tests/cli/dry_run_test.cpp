@@ -31,7 +31,7 @@ struct Planned {
 void find_frames(const Value& value, std::vector<Planned>& out) {
   if (const auto* record = std::get_if<Record>(&value.data()))
     for (const auto& field : *record) find_frames(field.value, out);
-  const auto* table = std::get_if<Table>(&value.data());
+  const auto* table = value.table();
   if (table == nullptr) return;
   std::optional<std::size_t> frame;
   std::optional<std::size_t> when;

@@ -66,7 +66,7 @@ TEST(HintPlace, IsThatOfTheFindingInWhatMendsIt) {
   const auto mended = [&](const std::string& bus, const std::string& mend, std::vector<std::string> line) {
     const auto parsed = parse_line(line);
     const auto out = with_place(findings(bus, mend), parsed.value());
-    const auto& table = std::get<report::Table>(out.result.data());
+    const auto& table = *out.result.table();
     const auto json = report::to_json(table.documents.front());
     const auto shown = std::get<std::string>(table.rows.back().back().data()).substr(8);
     EXPECT_NE(json.find("\"mend\":\"" + shown + "\""), std::string::npos) << json;

@@ -89,7 +89,7 @@ class Units : public testing::Test {
   }
   /// Of the first row of a table.
   std::string cell(const Result<report::Value>& value, std::string_view key) const {
-    const auto* table = value ? std::get_if<report::Table>(&value->data()) : nullptr;
+    const auto* table = value ? value->table() : nullptr;
     if (table == nullptr) return "no table";
     for (std::size_t i = 0; i < table->columns.size(); ++i)
       if (table->columns[i].key == key) return report::to_json(table->rows.front()[i]);

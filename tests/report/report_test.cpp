@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/text.hpp"
 #include "report/table_text.hpp"
@@ -218,6 +219,24 @@ TEST(Json, IsNoPlotWhereSecondsAndValuesDoNotFit) {
     ASSERT_FALSE(read.has_value()) << text;
     EXPECT_EQ(read.error().code, Errc::file);
   }
+}
+
+/// Of a large dictionary there are hundreds of thousands.
+TEST(Value, IsSmall) { EXPECT_LE(sizeof(Value), 40U); }
+
+TEST(Value, CopiesItsTableAndHasNoneOnceItIsMoved) {
+  Value first(table());
+  Value copy(first);
+  copy.table()->rows.clear();
+  EXPECT_EQ(first.table()->rows.size(), 2U);
+  copy = first;
+  EXPECT_EQ(to_json(copy), to_json(first));
+  const Value taken(std::move(first));
+  EXPECT_EQ(taken.table()->rows.size(), 2U);
+  EXPECT_EQ(first.table(), nullptr);  // NOLINT(bugprone-use-after-move)
+  EXPECT_EQ(to_json(first), "null");
+  EXPECT_EQ(Value(first).table(), nullptr);
+  EXPECT_EQ(Value(7).table(), nullptr);
 }
 
 }  // namespace

@@ -108,7 +108,7 @@ TEST_F(PlanOfBitrates, ADryRunShowsTheFramesThatAreSent) {
     };
     EXPECT_EQ(std::count_if(world.sent.begin(), world.sent.end(), changes), 0) << "a dry run sends none";
     std::vector<std::string> shown;
-    for (const auto& row : std::get<report::Table>(planned->data()).rows)
+    for (const auto& row : planned->table()->rows)
       shown.push_back(std::get<std::string>(row.back().data()));
     world.restart_session();
     world.sent.clear();
@@ -128,7 +128,7 @@ TEST_F(PlanOfBitrates, TakesTheInterfaceAlongWithDrivesOfSeveralFamilies) {
   const auto done = run_in(cell, {&cell.world.profile, &other});
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_TRUE(cell.world.desk.errors.empty()) << cell.world.desk.errors.front().message;
-  for (const auto& row : std::get<report::Table>(done->data()).rows)
+  for (const auto& row : done->table()->rows)
     EXPECT_EQ(std::get<std::string>(row.back().data()), "found at its new bitrate");
   EXPECT_EQ(cell.world.count("000#8100"), 1U);
   EXPECT_EQ(cell.world.notices(), "");

@@ -35,7 +35,7 @@ void find_frames(const Value& value, List node, List& out) {
     if (const auto* number = report::find(value, "node")) node = {*number};
     for (const auto& field : *record) find_frames(field.value, node, out);
   }
-  const auto* table = std::get_if<Table>(&value.data());
+  const auto* table = value.table();
   if (table == nullptr) return;
   const bool has_frames = has_column(*table, "frame");
   const bool has_values = has_column(*table, "value") && has_column(*table, "when");

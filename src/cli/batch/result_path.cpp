@@ -118,7 +118,7 @@ Result<std::vector<Part>> follow(const Value& result, std::string_view path) {
 
 std::optional<std::vector<Value>> elements(const Value& value) {
   if (const auto* list = std::get_if<List>(&value.data())) return *list;
-  const auto* table = std::get_if<Table>(&value.data());
+  const auto* table = value.table();
   if (table == nullptr) return std::nullopt;
   if (!table->documents.empty()) return table->documents;
   std::vector<Value> out;

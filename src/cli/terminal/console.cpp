@@ -51,11 +51,11 @@ std::string Console::dressed(std::string_view text, int descriptor) const {
   return has_colours(colour_, descriptor) ? coloured(out) : out;
 }
 
+/// What is not printable stands in JSON as an escape.
 void Console::json(std::string_view text) {
-  const auto shown = printable_lines(text);
-  write_out(shown);
+  write_out(text);
   if (log_ == nullptr) return;
-  log_->answered(shown);
+  log_->answered(text);
   check_log();
 }
 
