@@ -7,7 +7,6 @@
 
 #include "base/text.hpp"
 #include "cli/shell.hpp"
-#include "drive/topics.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
@@ -157,22 +156,26 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
 }
 
 /// Of a drive that a line has written to without naming its family: what was found out of it or said with -d,
-/// else the one family that its identity fits. Empty where none is known. The standard says nothing of the drive.
+/// else the one family that its identity fits. Empty where none is known. A file without a family, and the
+/// standard, are none.
 std::string Shell::family_by_identity(Session& session, std::uint8_t node) {
+  const auto is_own = [this](const std::string& family) {
+    const auto loaded = profile(family);
+    return loaded && *loaded != nullptr && !(*loaded)->is_generic();
+  };
   if (const auto found = families_.find(key_of(session, node));
-      found != families_.end() && found->second.family != drive::kStandardFamily)
+      found != families_.end() && is_own(found->second.family))
     return found->second.family;
   if (session.modbus() != nullptr) return {};
   const auto identity = session::read_identity(session, node);
   if (!identity) return {};
   if (!options_.state_folder.empty()) {
     const auto known = KnownDriveFile(options_.state_folder, session.url(), node).read();
-    if (known && *known && (*known)->family != drive::kStandardFamily &&
-        show::change_of((*known)->identity, *identity).empty())
+    if (known && *known && show::change_of((*known)->identity, *identity).empty() && is_own((*known)->family))
       return (*known)->family;
   }
   const auto fits = suggested(session, *identity, drive::find_families(options_.drive_folders));
-  return fits.size() == 1 ? fits.front() : std::string();
+  return fits.size() == 1 && is_own(fits.front()) ? fits.front() : std::string();
 }
 
 std::string Shell::no_family_hint() const {

@@ -57,7 +57,7 @@ void Shell::judge_writes(Run& run) {
     if (node == 0 || written.empty()) continue;
     const auto family = family_by_identity(*session, node);
     const auto found = family.empty() ? Result<const drive::Profile*>(nullptr) : profile(family);
-    if (found && *found != nullptr && !(*found)->is_generic()) {
+    if (found && *found != nullptr) {
       watch->learn(node, **found);
       keep_restarts();
       if (auto notice =

@@ -16,12 +16,23 @@ constexpr std::uint16_t kLastOfVendor = 0x5FFF;
 
 }  // namespace
 
+od::Effect OwedRestarts::effect_of(const Node& node, ObjectAddress object) {
+  if (node.profile == nullptr) return od::Effect::unstated;
+  const auto target = drive::target_at(node.profile, object);
+  if (target.parameter != nullptr) return target.parameter->effect;
+  return target.entry != nullptr ? target.entry->effect : od::Effect::unstated;
+}
+
+/// The data of a family say which objects wait: the others do not. The standard, and a file without a family,
+/// say nothing of those that they do not describe.
+bool OwedRestarts::is_judged(const Node& node, ObjectAddress object) {
+  if (node.profile == nullptr) return false;
+  return !node.profile->is_generic() || effect_of(node, object) != od::Effect::unstated;
+}
+
 bool OwedRestarts::waits(const Node& node, ObjectAddress object) {
   if (node.profile == nullptr) return false;
-  const auto target = drive::target_at(node.profile, object);
-  const auto effect = target.parameter != nullptr ? target.parameter->effect
-                      : target.entry != nullptr   ? target.entry->effect
-                                                  : od::Effect::unstated;
+  const auto effect = effect_of(node, object);
   // No drive changes its own address or bitrate while it answers, unless its data say so.
   if (object == node.node_id || object == node.bitrate) return effect != od::Effect::immediate;
   return effect == od::Effect::restart;
@@ -67,15 +78,20 @@ void OwedRestarts::take(Node& node, ObjectAddress object, const Bytes& now, bool
 
 void OwedRestarts::learn(std::uint8_t node, const drive::Profile& profile, bool registers, Starts starts) {
   auto& known = nodes_[node & 0x7FU];
-  if (profile.is_generic() || known.profile == &profile) return;
+  if (known.profile == &profile) return;
   known.profile = &profile;
   known.node_id =
       drive::place_of(profile, registers ? profile.rules.modbus.node_id : profile.rules.nmt.node_id);
   known.bitrate = drive::place_of(profile, profile.rules.nmt.bitrate);
   known.flash_switch = drive::place_of(profile, profile.rules.store.flash_switch);
   known.by_power = profile.rules.nmt.address_after == drive::NmtRules::Restart::power_cycle;
-  for (const auto& [value, since, reported] : std::exchange(known.unjudged, {})) {
-    if (has_restarted(known, since, starts) || !waits(known, value.object)) continue;
+  for (auto& one : std::exchange(known.unjudged, {})) {
+    const auto& value = one.value;
+    if (!is_judged(known, value.object)) {
+      known.unjudged.push_back(std::move(one));
+      continue;
+    }
+    if (has_restarted(known, one.since, starts) || !waits(known, value.object)) continue;
     settle(known, starts);
     take(known, value.object, value.stored, true);
     const auto owed = std::ranges::find(known.values, value.object, &OwedValue::object);
@@ -85,8 +101,7 @@ void OwedRestarts::learn(std::uint8_t node, const drive::Profile& profile, bool 
 
 /// Which restart is one of this drive, nobody knows yet: one by power is.
 void OwedRestarts::forget_unjudged(Node& node, Starts starts) {
-  std::erase_if(node.unjudged,
-                [&](const Unjudged& one) { return one.since.power_ups != starts.power_ups; });
+  std::erase_if(node.unjudged, [&](const Unjudged& one) { return one.since.power_ups != starts.power_ups; });
 }
 
 std::vector<ObjectAddress> OwedRestarts::take_unjudged(std::uint8_t node, Starts starts) {
@@ -103,6 +118,7 @@ void OwedRestarts::note_unjudged(Node& node, const Exchange& exchange, Starts st
   if (exchange.object.index == objects::kStoreIndex)
     for (auto& one : node.unjudged) one.value.kept = true;
   if (exchange.object.index < kFirstOfVendor || exchange.object.index > kLastOfVendor) return;
+  if (is_judged(node, exchange.object)) return;
   forget_unjudged(node, starts);
   std::erase_if(node.unjudged, [&](const Unjudged& one) { return one.value.object == exchange.object; });
   node.unjudged.push_back({{.object = exchange.object, .stored = *exchange.written}, starts});
@@ -135,7 +151,8 @@ void OwedRestarts::note_storing(Node& node, const Exchange& exchange) {
 void OwedRestarts::on_exchange(const Exchange& exchange, Starts starts) {
   auto& node = nodes_[exchange.node & 0x7FU];
   if (!exchange.result) return;
-  if (node.profile == nullptr) return note_unjudged(node, exchange, starts);
+  note_unjudged(node, exchange, starts);
+  if (node.profile == nullptr) return;
   note_storing(node, exchange);
   if (!waits(node, exchange.object)) return;
   settle(node, starts);

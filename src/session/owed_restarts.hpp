@@ -35,11 +35,11 @@ struct Starts {
 class OwedRestarts {
  public:
   /// What the node is: its data say which values wait, among them its node-ID and bitrate. What was written
-  /// before is judged as well. A generic family says nothing. `registers`: the node has its number on a Modbus
-  /// line.
+  /// before is judged as well, as far as the data say something of it. `registers`: the node has its number
+  /// on a Modbus line.
   void learn(std::uint8_t node, const drive::Profile& profile, bool registers, Starts starts);
-  /// Vendor objects that were written while nobody knew what the node is, and that were not told by this
-  /// before: whether they wait is not known.
+  /// Vendor objects that were written while nobody knew what the node is, or by the data of no family that
+  /// say nothing of them, and that were not told by this before: whether they wait is not known.
   std::vector<ObjectAddress> take_unjudged(std::uint8_t node, Starts starts);
   void on_exchange(const Exchange& exchange, Starts starts);
 
@@ -85,7 +85,9 @@ class OwedRestarts {
     Starts starts;
     bool changed = false;
   };
+  static od::Effect effect_of(const Node& node, ObjectAddress object);
   static bool waits(const Node& node, ObjectAddress object);
+  static bool is_judged(const Node& node, ObjectAddress object);
   static bool has_restarted(const Node& node, Starts before, Starts now);
   static void settle(Node& node, Starts starts);
   static void note_storing(Node& node, const Exchange& exchange);

@@ -25,7 +25,8 @@ class UnjudgedWrites : public testing::Test {
     Options options;
     options.exchanged = [this](const Exchange& exchange) { owed.on_exchange(exchange, starts); };
     session = std::make_unique<Session>(
-        sim::open_sim("gsd600@1", folders, sim::SimBus::Clock::virtual_time).value(), "sim:gsd600@1", options);
+        sim::open_sim("gsd600@1", folders, sim::SimBus::Clock::virtual_time).value(), "sim:gsd600@1",
+        options);
     profile = drive::load_profile("gsd600", folders).value();
     for (const auto object : {kWaits, kActsAtOnce}) EXPECT_TRUE(session->download(1, object, {0, 0}));
   }
@@ -54,6 +55,20 @@ TEST_F(UnjudgedWrites, AreNoOnesOfTheGenericFamily) {
   EXPECT_EQ(owed.take_unjudged(1, starts).size(), 2U);
   owed.learn(1, profile, false, starts);
   EXPECT_EQ(owed.values(1, starts).size(), 1U);
+}
+
+/// A table that somebody has made of a drive: what it says of an object holds.
+TEST_F(UnjudgedWrites, AreJudgedByAFileWithoutAFamilyWhereItSaysWhenTheyTakeEffect) {
+  auto table = drive::load_profile("cia402", folders).value();
+  for (const auto& parameter : profile.parameters)
+    if (parameter.object == kWaits) table.parameters.push_back(parameter);
+  table.build_index();
+  owed.learn(1, table, false, starts);
+  EXPECT_EQ(owed.take_unjudged(1, starts), std::vector{kActsAtOnce});
+  ASSERT_EQ(owed.values(1, starts).size(), 1U);
+  EXPECT_EQ(owed.values(1, starts).front().object, kWaits);
+  ASSERT_TRUE(session->download(1, kWaits, {1, 0}));
+  EXPECT_TRUE(owed.take_unjudged(1, starts).empty());
 }
 
 TEST_F(UnjudgedWrites, AreOverBehindTheRestartOfTheFamily) {
