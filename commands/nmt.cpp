@@ -213,6 +213,13 @@ constexpr std::string_view kDetails =
     "code 4 unless the node was stopped. With --wait it is done when a heartbeat confirms it; exit code 4 if "
     "none does. `-n all` addresses every node, and looks for nobody.";
 
+constexpr std::string_view kStartDetails =
+    "The command is sent once; nodes do not answer it. Before it and behind it servoctl asks the node, and listens "
+    "a quarter of a second for a second drive of its node-ID: two are an error, exit code 8. Without an answer, a "
+    "heartbeat or an answer to node guarding the result is \"sent, not confirmed\", exit code 4. With --wait it is "
+    "done when a heartbeat confirms it; exit code 4 if none does. `-n all` addresses every node, and looks for "
+    "nobody.";
+
 constexpr std::string_view kNmtElsewhere =
     "the AL state of a slave is changed with `state init`, `state preop`, `state safeop` and `state op`";
 
@@ -276,7 +283,7 @@ constexpr Command preparing(Command command) {
 
 extern const Command kNmtStart;
 constexpr Command kNmtStart = nmt_command<NmtCommand::start>(
-    "nmt start", "Set nodes to operational: PDOs active", kDetails, kNmtStartExamples);
+    "nmt start", "Set nodes to operational: PDOs active", kStartDetails, kNmtStartExamples);
 
 extern const Command kNmtStop;
 constexpr Command kNmtStop = nmt_command<NmtCommand::stop>("nmt stop", "Set nodes to stopped: no PDO, no SDO",

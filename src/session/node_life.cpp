@@ -68,15 +68,10 @@ Result<void> hold_single(Session& session, std::span<NodeLife> nodes) {
 }
 
 Result<void> look_for_second(Session& session, std::span<NodeLife> nodes) {
-  std::vector<NodeLife> unknown;
-  for (const auto& one : nodes)
-    if (!one.answers) unknown.push_back(one);
-  if (const auto asked = ask_who_answers(session, unknown); !asked) return asked;
+  if (const auto asked = ask_who_answers(session, nodes); !asked) return asked;
   std::vector<std::uint8_t> ids;
-  for (const auto& one : unknown) {
-    *std::ranges::find(nodes, one.node, &NodeLife::node) = one;
+  for (const auto& one : nodes)
     if (one.answers) ids.push_back(one.node);
-  }
   if (ids.empty() || session.can() == nullptr) return {};
   return settle_duplicates(session, ids, kBeforeMotion);
 }

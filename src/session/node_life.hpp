@@ -28,12 +28,13 @@ Result<void> ask_who_answers(Session& session, std::span<NodeLife> nodes);
 /// Asks until all have answered, at most for `patience`. Errors as there.
 Result<void> wait_for_answers(Session& session, std::span<NodeLife> nodes, Duration patience);
 
-/// Asks them, and hears whether two drives have one node-ID: what starts or resets a node goes to one drive.
-/// Errc::refused, and errors of the bus.
+/// Asks them, and hears whether two drives have one node-ID, as far as they are not stopped: what starts or
+/// resets a node goes to one drive. Errc::refused, and errors of the bus.
 Result<void> hold_single(Session& session, std::span<NodeLife> nodes);
 
-/// After a start or a reset, of those that answered no SDO request before it: asks them, and hears whether two
-/// drives have started. Over a gateway, which lets no frame be heard, it asks only. Errors of the bus.
+/// After a start or a reset: asks all, and hears whether two drives answer now: one of them, or both, may
+/// have been stopped before it. Over a gateway, which lets no frame be heard, it asks only. Errors of the
+/// bus.
 Result<void> look_for_second(Session& session, std::span<NodeLife> nodes);
 
 /// Waits until of each that is not known to be alive a boot-up, a heartbeat or an answer to node guarding was

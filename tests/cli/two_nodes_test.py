@@ -123,6 +123,15 @@ with sims(bus, "gsd600@1?lss", "gsd600@1?lss"):
         answer = run(bus, *words, "-n", "1", "-d", "gsd600")
         check(f"two of one identity: {words[0]} is refused\n{answer.stderr}", answer.returncode == 8 and not os.path.exists("two-nodes.json"))
 
+# One of two is stopped, and answers no SDO: both are heard once they have started.
+bus = f"local:half-stopped-{os.getpid()}"
+with sims(bus, "gsd600@1"):
+    run(bus, "nmt", "stop", "-n", "1")
+    with sims(bus, "dm@1"):
+        answer = run(bus, "nmt", "start", "-n", "1")
+        check(f"one of two is stopped: nmt start is an error\n{answer.stdout}{answer.stderr}",
+              answer.returncode == 8 and "two nodes answer" in answer.stderr)
+
 # A transfer that two drives break: they are named as the cause.
 bus = f"local:broken-node-{os.getpid()}"
 with sims(bus, "gsd600@1", "dm@1"):
