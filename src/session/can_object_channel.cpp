@@ -1,8 +1,23 @@
 #include "session/can_object_channel.hpp"
 
+#include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::session {
+namespace {
+
+/// Of a controlword with which the motor does not go on: all but "enable operation" without halt (CiA 402-2,
+/// bit 8), and the reset of a fault.
+bool slows_down(ByteSpan controlword) {
+  constexpr std::uint16_t kHalt = 0x0100;
+  if (controlword.empty() || controlword.size() > 2) return false;
+  const auto word = static_cast<std::uint16_t>(load_le(controlword));
+  const auto command = drive::decode_command(word, 0);
+  return (word & kHalt) != 0 || (command != drive::ControlCommand::enable_operation &&
+                                 command != drive::ControlCommand::fault_reset);
+}
+
+}  // namespace
 
 CanObjectChannel::CanObjectChannel(CanNetwork& network, std::uint8_t node, Duration timeout)
     : network_(&network),
@@ -45,8 +60,9 @@ void CanObjectChannel::start_download(ObjectAddress object, Bytes data, TimePoin
   emergency_id_.reset();
   stirred_ = true;
   if (data.size() == 4) emergency_id_ = static_cast<std::uint32_t>(load_le(data));
+  const bool waits_for_nothing = object == objects::kControlword && slows_down(data);
   client_.start_download(object, std::move(data), now, transfer);
-  if (object == objects::kControlword) client_.go_at_once(now);  // It may be the one that stops the motor.
+  if (waits_for_nothing) client_.go_at_once(now);
 }
 
 std::optional<Result<Bytes>> CanObjectChannel::take_result() {
