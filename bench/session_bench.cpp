@@ -35,7 +35,7 @@ void read_all_parameters_of_nodes(benchmark::State& state) {
 }
 BENCHMARK(read_all_parameters_of_nodes)->Arg(1)->Arg(8)->Unit(benchmark::kMillisecond);
 
-/// A job a node, each reading one object after the other: two changes of the thread an object.
+/// A job a node, each reading one object after the other: two changes of the stack an object.
 void read_one_object_each_side_by_side(benchmark::State& state) {
   auto session = open("gsd600@1,gsd600@2,gsd600@3,gsd600@4,gsd600@5,gsd600@6,gsd600@7,gsd600@8");
   constexpr int kReads = 1000;

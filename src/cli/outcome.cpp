@@ -46,10 +46,13 @@ Value shown(const Outcome& outcome) {
   return done ? outcome.result : report::chinese_value(outcome.result, &outcome.names);
 }
 
-/// The document of a line. A result that is written already may be of hundreds of megabytes: it goes out as it
-/// is, between what stands before and behind it.
-void show_document(Console& console, const Outcome& outcome) {
+/// The document of a line, in one piece: what shows it begins no text that it does not end. A result that is
+/// written already may be of hundreds of megabytes, and is copied once.
+std::string document(const Outcome& outcome) {
+  constexpr std::size_t kAround = 4096;
   std::string out;
+  if (const auto* written = std::get_if<report::Written>(&outcome.result.data()))
+    out.reserve(written->json.size() + kAround);
   report::JsonWriter json(out);
   json.begin_record();
   json.member("servoctl", 1);
@@ -57,22 +60,14 @@ void show_document(Console& console, const Outcome& outcome) {
   json.member("ok", outcome.errors.empty());
   json.text_or_null("bus", outcome.uses_bus ? std::string_view(outcome.settings.bus) : std::string_view());
   if (!outcome.errors.empty()) json.member("error", error_record(outcome));
-  json.key("result");
-  if (const auto* written = std::get_if<report::Written>(&outcome.result.data());
-      written != nullptr && !written->json.empty()) {
-    const std::string_view body = written->json;
-    console.json(out);
-    console.json(body.substr(0, body.size() - 1));
-    out = body.back();  // By it the writer knows where it is.
-  } else {
-    json.value(outcome.result);
-  }
+  json.member("result", outcome.result);
   json.key("notices");
   json.begin_list();
   for (const auto& notice : outcome.notices) json.value(notice);
   json.end_list();
   json.end_record();
-  console.json(out + "\n");
+  out += '\n';
+  return out;
 }
 
 /// Whether both are one column: a key stands once in a record, whatever the text of either shows.
@@ -147,7 +142,7 @@ std::string text_of(const Outcome& outcome, std::size_t width) {
 
 int show(Console& console, const Outcome& outcome) {
   if (outcome.settings.json) {
-    show_document(console, outcome);
+    console.json(document(outcome));
   } else {
     console.out(text_of(outcome, console.width()));
     show_remarks(console, outcome);

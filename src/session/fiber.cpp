@@ -23,17 +23,17 @@ namespace context = boost::context;
 /// Pages that are never touched take no memory.
 constexpr std::size_t kStackSize = std::size_t{4} << 20U;
 
-/// Lowest address and bytes of a stack, for the address sanitizer: it has to be told of each switch to another.
+/// Lowest address and bytes of a stack, for the address sanitizer: it has to be told of each switch to
+/// another.
 using Bounds = std::pair<const void*, std::size_t>;
 
-/// Before the switch to a stack; the answer goes to arrive() when this one goes on. `ends`: it never does.
-void* leave_for(const Bounds& other, bool ends = false) {
+/// Before the switch to a stack; the answer goes to arrive() when this one goes on.
+void* leave_for(const Bounds& other) {
   void* kept = nullptr;
 #if SERVOCTL_SANITIZED
-  __sanitizer_start_switch_fiber(ends ? nullptr : &kept, other.first, other.second);
+  __sanitizer_start_switch_fiber(&kept, other.first, other.second);
 #else
   (void)other;
-  (void)ends;
 #endif
   return kept;
 }
@@ -67,7 +67,7 @@ Fiber::Fiber(std::function<void()> body) : stack_(std::make_unique<Stack>()) {
                                   stack.caller = std::move(caller);
                                   stack.of_caller = arrive(nullptr);
                                   body();
-                                  (void)leave_for(stack.of_caller, true);
+                                  (void)leave_for(stack.of_caller);
                                   return std::move(stack.caller);
                                 });
 }

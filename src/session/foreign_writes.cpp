@@ -25,17 +25,17 @@ std::set<std::uint16_t> rpdo_numbers(const drive::Profile& profile) {
   return out;
 }
 
-/// Reads these objects of one node, each by a request of its own: one that is not answered says nothing of the
-/// others. What the node refuses is left out, and what it does not answer if it `may_be_silent`.
+/// Reads these objects of one node, each by a request of its own: one that is not answered says nothing of
+/// the others. What the node refuses is left out. `guessed`: nobody says that they are there, and the first
+/// one that it has no proper answer for ends the reading.
 Result<void> read_into(Values& values, Session& session, std::uint8_t node,
-                       const std::vector<ObjectAddress>& objects, bool may_be_silent = false) {
+                       const std::vector<ObjectAddress>& objects, bool guessed = false) {
   for (const auto object : objects) {
     auto answer = session.upload(node, object);
-    if (answer)
-      values[object] = std::move(*answer);
-    else if (const auto code = answer.error().code;
-             code != Errc::sdo_abort && !(may_be_silent && code == Errc::timeout))
-      return fail(answer.error());
+    const auto code = answer ? Errc::sdo_abort : answer.error().code;
+    if (guessed && (code == Errc::timeout || code == Errc::protocol)) return {};
+    if (!answer && code != Errc::sdo_abort) return fail(answer.error());
+    if (answer) values[object] = std::move(*answer);
   }
   return {};
 }

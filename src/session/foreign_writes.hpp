@@ -23,8 +23,8 @@ class ForeignWrites {
   ForeignWrites(Session& session, std::uint8_t node, OnWrite on_write);
 
   /// Reads which CAN-IDs write which objects of the node: RPDOs that are valid now. One that the node refuses
-  /// to show is left out, and so is one that its data do not list and that it does not answer for. Errors of
-  /// reading: timeout, protocol, bus, interrupted.
+  /// to show is left out, and so is one that its data do not list and that it has no proper answer for.
+  /// Errors of reading: timeout, protocol, bus, interrupted.
   Result<void> learn_rpdos(const drive::Profile& profile);
 
  private:

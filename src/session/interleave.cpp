@@ -30,8 +30,8 @@ void Interleave::run() {
   // Whether a wait is cancelled is asked for each job on its own.
   auto cancelled = std::exchange(session_->options().cancelled, {});
   open_ = lanes_.size();
-  for (const auto& lane : lanes_) start(*lane);
-  pump();
+  for (const auto& lane : lanes_) guarded([&] { start(*lane); });
+  while (open_ > 0) guarded([this] { pump(); });
   session_->options().cancelled = std::move(cancelled);
   session_->interleave_ = nullptr;
   for (const auto& lane : lanes_)
@@ -80,16 +80,24 @@ Result<bool> Interleave::park(TimePoint deadline, const std::function<bool()>& c
   return std::move(lane.answer);
 }
 
-void Interleave::pump() {
-  while (open_ > 0) {
-    if (tell_cancelled()) continue;
-    const auto before = session_->network().stepped_at();
-    // What a job took in itself may have been for another one, which nobody has asked since.
-    const bool restless = std::exchange(taken_in_, false) || before != seen_;
-    const auto stepped = step_until(restless ? session_->received_at() : next_deadline());
-    seen_ = session_->network().stepped_at();
-    serve(stepped);
+/// What is thrown outside of the jobs is the end of the bus for all of them: each goes its way out, and none
+/// is left where it waits.
+void Interleave::guarded(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (...) {
+    if (!broken_) broken_ = std::current_exception();
   }
+}
+
+void Interleave::pump() {
+  if (!broken_ && tell_cancelled()) return;
+  const auto before = session_->network().stepped_at();
+  // What a job took in itself may have been for another one, which nobody has asked since.
+  const bool restless = std::exchange(taken_in_, false) || before != seen_;
+  const auto stepped = step_until(restless ? session_->received_at() : next_deadline());
+  seen_ = session_->network().stepped_at();
+  serve(stepped);
 }
 
 TimePoint Interleave::next_deadline() const {
@@ -99,14 +107,9 @@ TimePoint Interleave::next_deadline() const {
   return next;
 }
 
-/// A step that throws is the end of the bus for all jobs: they go their ways out.
 Result<bool> Interleave::step_until(TimePoint deadline) {
-  try {
-    if (!broken_) return session_->step_network(std::min(deadline, session_->received_at() + kLongestStep));
-  } catch (...) {
-    broken_ = std::current_exception();
-  }
-  return fail(Errc::bus, "the bus cannot be listened to any more");
+  if (broken_) return fail(Errc::bus, "the bus cannot be listened to any more");
+  return session_->step_network(std::min(deadline, session_->received_at() + kLongestStep));
 }
 
 /// Those that hear Ctrl-C; false when none did.
@@ -124,8 +127,7 @@ void Interleave::serve(const Result<bool>& stepped) {
   for (const auto& lane : lanes_) {
     if (lane->ended) continue;
     const bool due = lane->deadline <= session_->received_at();
-    const bool concerned = lane->concerns == nullptr || (*lane->concerns)();
-    if (!stepped || due || concerned) resume(*lane, stepped);
+    if (!stepped || due || lane->concerns == nullptr || (*lane->concerns)()) resume(*lane, stepped);
   }
 }
 

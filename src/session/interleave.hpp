@@ -17,8 +17,8 @@ namespace servoctl::session {
 using Job = std::function<void()>;
 
 /// Runs several jobs side by side on one session: while one waits for its drive the others go on. Each has a
-/// stack of its own in the one thread; a job gives way where it waits (Session::step() and what stands on it),
-/// nowhere else.
+/// stack of its own in the one thread; a job gives way where it waits (Session::step() and what stands on
+/// it), nowhere else.
 ///
 /// What arrives wakes those whom it concerns; a lost bus is told to all that wait, and so is Ctrl-C, but for
 /// those that are deaf to it (Deaf). Each job has options of its own, which begin as those of the session,
@@ -56,6 +56,7 @@ class Interleave {
 
   void start(Lane& lane);
   void give_turn(Lane& lane);
+  void guarded(const std::function<void()>& action);
   void pump();
   Result<bool> step_until(TimePoint deadline);
   bool tell_cancelled();
@@ -66,8 +67,8 @@ class Interleave {
   Session* session_;
   std::vector<std::unique_ptr<Lane>> lanes_;
   std::size_t open_ = 0;
-  bool taken_in_ = false;  ///< A job took in an arrival itself.
-  TimePoint seen_{};       ///< Of the last step of the pump.
+  bool taken_in_ = false;    ///< A job took in an arrival itself.
+  TimePoint seen_{};         ///< Of the last step of the pump.
   Lane* running_ = nullptr;  ///< Null: the pump.
   std::exception_ptr broken_;
 };
