@@ -108,6 +108,25 @@ TEST_P(ForeignPdo, AMappingThatIsNotAnsweredKeepsTheDriveFromBeingEnabled) {
   EXPECT_FALSE(bench.energised());
 }
 
+/// What a drive without RPDOs does where nobody says that it has some.
+TEST_P(ForeignPdo, RpdosThatNobodyListsMayBeMissingInAnyWay) {
+  session::ForeignWrites writes(*bench.session, 1, [](auto, auto) {});
+  std::size_t asked = 0;
+  bench.bus->swallows = [&](const std::string& frame) {
+    const bool is_head = frame.starts_with("601#400014");
+    asked += is_head ? 1 : 0;
+    return is_head;
+  };
+  EXPECT_TRUE(writes.learn_rpdos(drive::Profile{}));
+  EXPECT_EQ(asked, 2U) << "one silent object and its second try tell enough";
+  bench.bus->swallows = {};
+  bench.bus->alter = [](can::Frame& frame) {
+    if (frame.id == 0x581 && frame.data[2] == 0x14) frame.data[0] = 0x20;  // No answer to a read.
+  };
+  EXPECT_TRUE(writes.learn_rpdos(drive::Profile{}));
+  EXPECT_FALSE(writes.learn_rpdos(bench.profile())) << "its data list them";
+}
+
 INSTANTIATE_TEST_SUITE_P(Families, ForeignPdo,
                          testing::Values(Case{"cia402", 10000}, Case{"ts", 10000}, Case{"gsd600", 131072}),
                          [](const auto& one) { return std::string(one.param.family); });

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
+#include <new>
 #include <stdexcept>
 
 #include "session/option_scope.hpp"
@@ -263,6 +264,24 @@ TEST(Interleave, WhatAJobThrowsIsThrownWhenAllHaveEnded) {
                       }};
   EXPECT_THROW(run_side_by_side(*session, jobs), std::out_of_range);
   EXPECT_TRUE(ended);
+  EXPECT_TRUE(session->upload(1, kAcceleration));
+}
+
+/// Each goes its way out: none stays where it waits.
+TEST(Interleave, WhatIsThrownBesideTheJobsEndsThemAll) {
+  const auto session = cabinet_of("gsd600@1,gsd600@2,gsd600@3?delay=2ms");
+  session->options().list_progress = [](std::size_t, std::size_t, TimePoint) { throw std::bad_alloc(); };
+  std::size_t lost = 0;
+  const std::function<bool()> throws = [] { return throw std::out_of_range("no"), false; };
+  const Job jobs[] = {[&] { lost += !session->upload(1, kAcceleration); },
+                      [&] { lost += !session->step(session->now() + 10s, throws); },
+                      [&] {
+                        const auto waited = session->wait([] { return false; }, session->now() + 10s);
+                        lost += !waited && waited.error().code == Errc::bus;
+                      }};
+  EXPECT_ANY_THROW(run_side_by_side(*session, jobs));
+  EXPECT_EQ(lost, 3U);
+  session->options().list_progress = {};
   EXPECT_TRUE(session->upload(1, kAcceleration));
 }
 
