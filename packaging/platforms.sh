@@ -40,7 +40,7 @@ make_root() {
 take_source() {
   local source=$kept/$1/servoctl
   [ -d "$source" ] || git clone -q . "$source"
-  git -C "$source" fetch -q "$PWD" HEAD
+  git -C "$source" fetch -q --tags "$PWD" HEAD
   git -C "$source" checkout -q --detach FETCH_HEAD
 }
 
@@ -58,6 +58,7 @@ for release in "${releases[@]}"; do
     rm -rf build/package/_CPack_Packages
     DEB_HOST_ARCH=arm64 tests/real/clean_root_test.sh build/arm64/servoctl build/arm64"
   if [ "$what" = tests ]; then inside "$release" "cd /servoctl; ctest --preset arm64 -j \$(nproc) -R '^Program'"; fi
+  rm -rf "build/package/$release"
   mkdir -p "build/package/$release"
   cp "$kept/$release"/servoctl/build/package/servoctl* "build/package/$release/"
 done

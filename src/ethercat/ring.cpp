@@ -221,4 +221,10 @@ TimePoint Ring::deadline() const {
   return out;
 }
 
+void Carrier::leave(Ring& ring) {
+  if (ticket_) ring.forget(*ticket_);
+  ticket_.reset();
+  request_.reset();
+}
+
 }  // namespace servoctl::ethercat

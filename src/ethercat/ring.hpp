@@ -129,11 +129,7 @@ class Carrier {
     return ticket_.has_value();
   }
   /// The machine is about to go: what comes back is nobody's.
-  void leave(Ring& ring) {
-    if (ticket_) ring.forget(*ticket_);
-    ticket_.reset();
-    request_.reset();
-  }
+  void leave(Ring& ring);
 
  private:
   std::optional<Ring::Ticket> ticket_;
