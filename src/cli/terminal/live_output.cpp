@@ -77,8 +77,8 @@ void LiveOutput::offer(std::string_view text, Duration patience, const std::func
 
 void LiveOutput::write(std::string_view text) {
   const auto before = signals_noted();
-  auto all = take_waiting().append(text);
-  std::string_view rest = all;
+  const auto all = waiting_.empty() ? std::string() : take_waiting().append(text);
+  std::string_view rest = all.empty() ? text : all;
   while (!rest.empty()) {
     const auto taken = ::write(descriptor_, rest.data(), rest.size());
     if (taken >= 0) {
