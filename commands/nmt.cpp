@@ -1,5 +1,4 @@
 #include "canopen/nmt.hpp"
-#include "canopen/node_list.hpp"
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -46,9 +45,7 @@ Result<void> wait_for_boots(session::Session& session, std::span<const Before> n
 /// After a reset of all nodes: what waited for it is forgotten only where the restart is heard.
 Result<void> hear_owed_restarts(const Context& context) {
   auto& session = *context.session;
-  std::vector<std::uint8_t> owing;
-  for (const auto node : canopen::every_node_id())
-    if (show::OwedRestartFile(context.state_folder, session.url(), node).is_there()) owing.push_back(node);
+  const auto owing = show::owing_nodes(context.state_folder, session.url());
   return wait_for_boots(session, session::look_from_now(session, owing));
 }
 

@@ -27,7 +27,7 @@ RestartWatch::RestartWatch(session::Session& session, std::filesystem::path stat
     : session_(&session), folder_(std::move(state_folder)) {
   if (session.url().starts_with("replay:")) folder_.clear();
   if (folder_.empty()) return;
-  for (const auto node : canopen::every_node_id())
+  for (const auto node : show::owing_nodes(folder_, session.url()))
     if (auto kept = show::OwedRestartFile(folder_, session.url(), node).read(); kept && *kept) {
       in_file_[node] = objects_of((*kept)->values);
       if ((*kept)->bus_bitrate) bitrates_[node] = *(*kept)->bus_bitrate;

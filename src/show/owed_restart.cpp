@@ -8,6 +8,7 @@
 #include "base/regular_files.hpp"
 #include "base/text.hpp"
 #include "canopen/node_id.hpp"
+#include "canopen/node_list.hpp"
 #include "session/identify.hpp"
 #include "session/open_bus.hpp"
 #include "session/option_scope.hpp"
@@ -60,13 +61,30 @@ Result<OwedValue> value_of(const Value& record, const std::string& file) {
   return out;
 }
 
+/// What the names of the files of a bus begin with; the node and `.json` follow.
+std::string name_of(std::string_view bus_url) {
+  return fmt::format("restart-{}-node-", bus_name(session::url_without_bitrate(bus_url)));
+}
+
 }  // namespace
 
 OwedRestartFile::OwedRestartFile(const fs::path& state_folder, std::string_view bus_url, std::uint8_t node)
     : node_(node) {
-  if (!state_folder.empty())
-    path_ = state_folder /
-            fmt::format("restart-{}-node-{}.json", bus_name(session::url_without_bitrate(bus_url)), node);
+  if (!state_folder.empty()) path_ = state_folder / fmt::format("{}{}.json", name_of(bus_url), node);
+}
+
+std::vector<std::uint8_t> owing_nodes(const fs::path& state_folder, std::string_view bus_url) {
+  std::vector<std::uint8_t> out;
+  const auto begin = name_of(bus_url);
+  std::error_code error;
+  for (fs::directory_iterator file(state_folder, error), end; !error && file != end; file.increment(error)) {
+    const auto name = file->path().filename().string();
+    if (!name.starts_with(begin)) continue;
+    for (const auto node : canopen::every_node_id())
+      if (std::string_view(name).substr(begin.size()) == fmt::format("{}.json", node)) out.push_back(node);
+  }
+  std::ranges::sort(out);
+  return out;
 }
 
 bool OwedRestartFile::is_there() const {

@@ -42,6 +42,9 @@ class OwedRestartFile {
   std::filesystem::path path_;
 };
 
+/// The nodes of a bus of which the folder for state has such a file, in order.
+std::vector<std::uint8_t> owing_nodes(const std::filesystem::path& state_folder, std::string_view bus_url);
+
 /// The node-ID that waits for the restart.
 std::optional<std::uint8_t> next_node_id(const std::vector<session::OwedValue>& values,
                                          const std::optional<ObjectAddress>& node_id);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -50,6 +51,18 @@ class OwedRestartKept : public testing::Test {
   const fs::path folder = fs::path(testing::TempDir()) / (std::to_string(::getpid()) + "-owed");
   std::unique_ptr<session::Session> session;
 };
+
+TEST_F(OwedRestartKept, TheFolderSaysOfWhichNodes) {
+  EXPECT_TRUE(owing_nodes(folder / "none", "sim:one").empty());
+  for (const auto* url : {"sim:one", "sim:one-node-1", "sim:other"})
+    for (const auto node : {std::uint8_t{127}, std::uint8_t{1}})
+      ASSERT_TRUE(
+          OwedRestartFile(folder, url, node).write(owed({{0x2003, 2}, Bytes{0, 0}, Bytes{1, 0}, true})));
+  for (const auto* name : {"restart-sim-one-node-0.json", "restart-sim-one-node-1.json.part", "other"})
+    std::ofstream(folder / name) << "{}";
+  for (const auto* url : {"sim:one", "sim:one-node-1", "sim:other"})
+    EXPECT_EQ(owing_nodes(folder, url), (std::vector<std::uint8_t>{1, 127})) << url;
+}
 
 /// A drive of the kind at the node-ID that waits may be another one, unless its serial number is the same.
 TEST_F(OwedRestartKept, IsOverWhereTheSameDriveAnswersWithItsNewNodeId) {
