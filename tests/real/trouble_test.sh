@@ -62,8 +62,7 @@ sim=$!
 for _ in $(seq 100); do grep -q 'drive on' "$work/sim" && break; sleep 0.1; done
 drive backup "$work/good.json" >"$work/out" 2>"$work/err" || fail "a backup in peace"
 for _ in $(seq 300); do printf 'read 0x1000\nwait 10ms\n'; done >"$work/reads"
-# One after the other, so that the bus goes in the midst of one.
-for i in $(seq 10); do printf 'backup %s/cut%s.json\n' "$work" "$i"; done >"$work/backups"
+for i in 1 2; do printf 'backup %s/cut%s.json\n' "$work" "$i"; done >"$work/backups"
 
 # outlasts HOW WORDS...: what listens goes on behind a bus that comes back; that it went and is back is told once each.
 outlasts() {
@@ -96,6 +95,13 @@ for how in down bus-off; do
 done
 drive write 0x1017 0 >"$work/out" 2>"$work/err" || fail "no heartbeat"
 outlasts down nmt watch --guard 100ms --for 4s
+
+# A backup of a drive that answers behind 5 ms takes some seconds: the bus goes in the midst of one, and not between two lines.
+kill "$sim"
+wait "$sim" 2>/dev/null
+"$servoctl" sim 'gsd600@1?delay=5ms' --bus can1 >"$work/sim" 2>&1 &
+sim=$!
+for _ in $(seq 100); do grep -q 'drive on' "$work/sim" && break; sleep 0.1; done
 
 # Where it does not come back they end when their time is over.
 for how in down bus-off; do
