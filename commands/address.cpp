@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/node_id.hpp"
@@ -50,7 +50,7 @@ Result<settings::AddressWish> address_wish(const Arguments& arguments) {
     const auto number = parse_integer(arguments.text("new"));
     const auto node = number ? number->as_unsigned() : std::nullopt;
     if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-      return fail(Errc::usage, fmt::format("'{}' is not a node-ID", arguments.text("new")),
+      return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("new")),
                   "node-IDs are 1 to 127");
     out.node = static_cast<std::uint8_t>(*node);
   }
@@ -101,12 +101,12 @@ const cabinet::Axis* axis_at(const Context& context, const AddressChange& change
 
 std::string change_text(const AddressChange& change) {
   const auto serial = change.identity.serial.value_or(0);
-  const auto who = serial != 0 ? fmt::format("node {} (serial number {})", change.node, serial)
-                               : fmt::format("node {}", change.node);
-  if (!change.bitrate) return fmt::format("{} to node-ID {}", who, change.to);
+  const auto who = serial != 0 ? formatted("node {} (serial number {})", change.node, serial)
+                               : formatted("node {}", change.node);
+  if (!change.bitrate) return formatted("{} to node-ID {}", who, change.to);
   const auto rate = drive::bitrate_text(*change.bitrate);
-  if (!change.moves()) return fmt::format("{} to the bitrate {}", who, rate);
-  return fmt::format("{} to node-ID {} and the bitrate {}", who, change.to, rate);
+  if (!change.moves()) return formatted("{} to the bitrate {}", who, rate);
+  return formatted("{} to node-ID {} and the bitrate {}", who, change.to, rate);
 }
 
 std::string question_address(const Context& context, std::span<const AddressChange> changes,
@@ -116,18 +116,18 @@ std::string question_address(const Context& context, std::span<const AddressChan
     if (!change.idle()) append(out, change_text(change));
   for (const auto& change : changes)
     if (const auto* other = axis_at(context, change); other != nullptr)
-      out += fmt::format("; in the cabinet file {} is the place of axis {}", change.to, other->name);
+      out += formatted("; in the cabinet file {} is the place of axis {}", change.to, other->name);
   if (follower.follows()) {
-    out = out.empty() ? "Every drive has it for its next start" : fmt::format("Re-address {}", out);
+    out = out.empty() ? "Every drive has it for its next start" : formatted("Re-address {}", out);
     out += "; " + settings::switch_text(follower);
     if (const auto who = who_receives(follower.link->name()); !who.empty()) out += "; " + who;
     return out + ".";
   }
   if (std::ranges::none_of(changes, &AddressChange::restarts))
-    return fmt::format("Re-address {}? It holds when the drive is switched off and on.", out);
+    return formatted("Re-address {}? It holds when the drive is switched off and on.", out);
   return context.profile->rules.nmt.address_after == drive::NmtRules::Restart::reset_node
-             ? fmt::format("Re-address {}? It is restarted (NMT reset node).", out)
-             : fmt::format("Re-address {}? It is restarted (NMT reset communication).", out);
+             ? formatted("Re-address {}? It is restarted (NMT reset node).", out)
+             : formatted("Re-address {}? It is restarted (NMT reset communication).", out);
 }
 
 /// What a file of the user's says of the drive that has moved.
@@ -139,10 +139,10 @@ void tell_axes(Context& context, const AddressChange& change, const AddressOutco
 /// Nobody waited for it.
 void tell_power(Context& context, const AddressChange& change, const AddressOutcome& outcome) {
   if (outcome.end != AddressEnd::awaits_restart || outcome.error || change.bitrate) return;
-  context.notices.push_back(fmt::format(
-      "node {}: switch it off and on; then it is node {} (`--wait 5min` waits for it, `info -n {}` "
-      "shows it)",
-      change.node, change.to, change.to));
+  context.notices.push_back(
+      formatted("node {}: switch it off and on; then it is node {} (`--wait 5min` waits for it, `info -n {}` "
+                "shows it)",
+                change.node, change.to, change.to));
 }
 
 /// How the interface follows its drives to another bitrate, where one is wished.
@@ -170,8 +170,8 @@ Result<Value> change_addresses(Context& context, std::span<const AddressChange> 
     settings::follow_bitrate(context, follower, changes, outcomes, options);
   else if (follower.follows())
     context.notices.push_back(
-        fmt::format("{} stays at its bitrate, and nothing is restarted: not every drive was written",
-                    follower.link->name()));
+        formatted("{} stays at its bitrate, and nothing is restarted: not every drive was written",
+                  follower.link->name()));
   bool awaits_bitrate = false;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     if (outcomes[i].error) context.errors.push_back(*outcomes[i].error);

@@ -1,9 +1,9 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 #include <system_error>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "canopen/pdo.hpp"
 #include "command/command.hpp"
@@ -78,7 +78,7 @@ void keep_changed(const drive::Profile& profile, settings::Backup& backup, setti
 Result<void> make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return fail(Errc::file, fmt::format("{}: {}", folder.string(), error.message()));
+  if (error) return fail(Errc::file, formatted("{}: {}", folder.string(), error.message()));
   return {};
 }
 
@@ -87,7 +87,7 @@ void tell_format(Context& context, const std::filesystem::path& file, const Argu
                  settings::BackupFormat format) {
   const auto ending = lower(file.extension().string());
   if (arguments.has("--format") || settings::extension_of(format) == ending) return;
-  context.notices.push_back(fmt::format(
+  context.notices.push_back(formatted(
       "{} is written as {}: it ends in none of .json, .dcf, .csv and .servoctl, and there is no --format",
       file.string(), settings::kBackupFormats[static_cast<std::size_t>(format)]));
 }
@@ -106,7 +106,7 @@ void tell_lines(Context& context, const std::filesystem::path& file, std::uint8_
       std::count_if(read->entries.begin(), read->entries.end(),
                     [](const settings::Backup::Entry& entry) { return entry.bytes.has_value(); }));
   if (lines == values) return;
-  context.notices.push_back(fmt::format(
+  context.notices.push_back(formatted(
       "{} has lines for {} of {} values: node-ID, bitrate and what is outside of its limits are comments, "
       "entries of PDOs that are not in use have none; JSON keeps all",
       file.string(), lines, values));
@@ -137,7 +137,7 @@ Result<Value> run_backup(Context& context, const Arguments& arguments) {
   if (!many) tell_format(context, path, arguments, format);
   std::vector<std::filesystem::path> files;
   for (const auto node : context.nodes)
-    files.push_back(many ? path / fmt::format("node-{}{}", node, settings::extension_of(format)) : path);
+    files.push_back(many ? path / formatted("node-{}{}", node, settings::extension_of(format)) : path);
   for (const auto& file : files)
     if (const auto agreed = show::may_replace(file, context.read_only, context); !agreed)
       return fail(agreed.error());

@@ -1,10 +1,10 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/signal_wait.hpp"
 #include "can/slcan_link.hpp"
 #include "command/command.hpp"
@@ -69,8 +69,8 @@ report::Table bitrates_table(const session::Search& search) {
 
 std::string question_bus_detect(const std::string& name, const can::LinkState& before) {
   const auto how = session::settings_text(before);
-  auto out = fmt::format("Take {} down to listen at other bitrates? It is up{}{}", name,
-                         how.empty() ? "" : " at ", how);
+  auto out = formatted("Take {} down to listen at other bitrates? It is up{}{}", name,
+                       how.empty() ? "" : " at ", how);
   if (const auto who = who_receives(name); !who.empty()) out += "; " + who;
   return out + ". It is put back afterwards.";
 }
@@ -116,12 +116,12 @@ Error no_bitrate_found(const Listener& listener, const session::Search& search) 
   if (noise)
     return make_error(
         Errc::negative,
-        fmt::format("no bitrate was found on {}: errors were heard, and no frame at any bitrate", name),
+        formatted("no bitrate was found on {}: errors were heard, and no frame at any bitrate", name),
         "somebody talks: check CAN_H and CAN_L for being crossed, the 120 ohm at both ends, and that "
         "all nodes have one bitrate; another one than the usual ones: --bitrate 83333");
   return make_error(
-      Errc::negative, fmt::format("no bitrate was found on {}: nobody talks", name),
-      fmt::format(
+      Errc::negative, formatted("no bitrate was found on {}: nobody talks", name),
+      formatted(
           "drives that send nothing by themselves cannot be heard: switch one off and on while this runs (its "
           "boot-up is a frame), listen longer (--for 10s), or ask at each bitrate with `scan --all-bitrates "
           "--bus {}`; then check power, cable and plug",
@@ -131,8 +131,8 @@ Error no_bitrate_found(const Listener& listener, const session::Search& search) 
 /// Where it stands if the process is killed in between.
 void tell_before(const Context& context, const std::string& name, const can::LinkState& before) {
   const auto how = session::settings_text(before);
-  context.tell(fmt::format("{} was {}{}{}; it is put back to that\n", name, before.up ? "up" : "down",
-                           how.empty() ? "" : " with ", how));
+  context.tell(formatted("{} was {}{}{}; it is put back to that\n", name, before.up ? "up" : "down",
+                         how.empty() ? "" : " with ", how));
 }
 
 /// An interface that is in use is asked for; the bus of this prompt that has the adapter is closed.
@@ -142,7 +142,7 @@ Result<void> take_interface(Context& context, const Listener& listener, const ca
   if (before.up || is_ours) {
     if (const auto held = hold_energised(context, name); !held) return held;
     const auto question = is_ours
-                              ? fmt::format(
+                              ? formatted(
                                     "Close the bus of this prompt over {} to listen at other bitrates? The "
                                     "next line that needs it opens it again.",
                                     name)
@@ -168,11 +168,11 @@ void tell_next(Context& context, const Listener& listener, const can::LinkState&
   const auto& name = listener.name();
   if (listener.serial)
     context.notices.push_back(
-        fmt::format("{} is closed again; `-b {}` takes part in the bus", name, listener.bus_at(bitrate)));
+        formatted("{} is closed again; `-b {}` takes part in the bus", name, listener.bus_at(bitrate)));
   else if (!before.up || before.bitrate != bitrate)
     context.notices.push_back(
-        fmt::format("{} was put back to what it was; `bus up {} --bitrate {}` takes part in the bus", name,
-                    name, bitrate));
+        formatted("{} was put back to what it was; `bus up {} --bitrate {}` takes part in the bus", name,
+                  name, bitrate));
 }
 
 Result<Value> run_bus_detect(Context& context, const Arguments& arguments) {

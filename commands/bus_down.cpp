@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "can/link_change.hpp"
 #include "command/command.hpp"
 #include "command/interface_option.hpp"
@@ -28,12 +28,12 @@ Result<Value> run_bus_down(Context& context, const Arguments& arguments) {
     return Value(std::move(table));
   }
   if (!before->up) {
-    context.notices.push_back(fmt::format("{} is down already; nothing was changed", *name));
+    context.notices.push_back(formatted("{} is down already; nothing was changed", *name));
     return Value(show::link_record(*name, *before));
   }
   if (const auto held = hold_energised(context, *name); !held) return fail(held.error());
   if (const auto who = who_receives(*name); !who.empty())
-    if (const auto agreed = context.confirm(fmt::format(
+    if (const auto agreed = context.confirm(formatted(
             "Take {} down? {}, and what drives do without their master is their own affair.", *name, who));
         !agreed)
       return fail(agreed.error());

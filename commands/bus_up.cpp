@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "can/link_change.hpp"
@@ -32,7 +33,7 @@ Result<std::optional<std::uint16_t>> sample_point_of(const Arguments& arguments)
   const auto number = parse_real(trim(text));
   const double thousandths = number ? *number * (per_cent ? 10 : 1000) : 0;
   if (!number || !(thousandths >= 500 && thousandths < 1000))
-    return fail(Errc::usage, fmt::format("'{}' is not a sample point", arguments.text("--sample-point")),
+    return fail(Errc::usage, formatted("'{}' is not a sample point", arguments.text("--sample-point")),
                 "write 0.8 or 80%; CiA 301 recommends 0.875");
   return std::optional(static_cast<std::uint16_t>(std::floor(thousandths + 0.5)));
 }
@@ -57,8 +58,8 @@ Result<session::BusWish> bus_wish(const Arguments& arguments) {
 }
 
 std::string question_bus_up(const std::string& name, const session::BusPlan& plan) {
-  auto out = fmt::format("Take {} down and up again? It is up with {}. Its bus stands still for that time",
-                         name, fmt::join(plan.differs, ", "));
+  auto out = formatted("Take {} down and up again? It is up with {}. Its bus stands still for that time",
+                       name, fmt::join(plan.differs, ", "));
   if (const auto who = who_receives(name); !who.empty()) out += "; " + who;
   return out + ".";
 }
@@ -83,8 +84,7 @@ Result<Value> run_bus_up(Context& context, const Arguments& arguments) {
   if (!plan) return fail(plan.error());
   if (context.dry_run) return planned_bus_up(*name, *plan);
   if (plan->steps.empty()) {
-    context.notices.push_back(
-        fmt::format("{} is up with these settings already; nothing was changed", *name));
+    context.notices.push_back(formatted("{} is up with these settings already; nothing was changed", *name));
     return Value(show::link_record(*name, *before));
   }
   if (plan->stops_bus) {

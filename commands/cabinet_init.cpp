@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cabinet/cabinet_text.hpp"
 #include "cabinet/name_pattern.hpp"
@@ -40,7 +40,7 @@ Result<Families> families_of(const Arguments& arguments) {
     const auto nodes = canopen::parse_node_ids(trim(part.substr(0, equals)), "--family 1=gsd600,2-4=da200");
     if (!nodes) return fail(nodes.error());
     if (equals == std::string_view::npos || trim(part.substr(equals + 1)).empty())
-      return fail(Errc::usage, fmt::format("--family: '{}' names no family", part),
+      return fail(Errc::usage, formatted("--family: '{}' names no family", part),
                   "--family 1=gsd600,2-4=da200");
     for (const auto node : *nodes) out[node] = std::string(trim(part.substr(equals + 1)));
   }
@@ -77,14 +77,13 @@ class Init {
     std::error_code ignored;
     if (!fs::exists(file_, ignored)) return std::string();
     if (context_->read_only)
-      return fail(Errc::refused, fmt::format("{} exists, and --read-only replaces no file", file_.string()),
+      return fail(Errc::refused, formatted("{} exists, and --read-only replaces no file", file_.string()),
                   "name a file that does not exist yet");
     const auto present = cabinet::read_cabinet(file_);
     if (!present) return fail(present.error());
     for (const auto& bus : present->buses)
       if (bus.name == bus_ || bus.url == context_->front_end->bus_url())
-        return fail(Errc::refused,
-                    fmt::format("{} has bus {} ({}) already", file_.string(), bus.name, bus.url),
+        return fail(Errc::refused, formatted("{} has bus {} ({}) already", file_.string(), bus.name, bus.url),
                     "name another file, or another bus with --bus and --name");
     names_ = present->names();
     auto text = read_file(file_);
@@ -111,7 +110,7 @@ class Init {
     for (auto& axis : out) read(axis);
     for (const auto& [node, family] : families_)
       if (std::none_of(out.begin(), out.end(), [n = node](const auto& axis) { return axis.node == n; }))
-        context_->notices.push_back(fmt::format("--family {}={}: no drive answered there", node, family));
+        context_->notices.push_back(formatted("--family {}={}: no drive answered there", node, family));
     return out;
   }
 
@@ -119,8 +118,7 @@ class Init {
     FoundAxis out;
     out.node = identity.node;
     out.identity = identity;
-    out.name =
-        fmt::format("{}{}", context_->session->ethercat() != nullptr ? "slave" : "node", identity.node);
+    out.name = formatted("{}{}", context_->session->ethercat() != nullptr ? "slave" : "node", identity.node);
     if (std::find(names_.begin(), names_.end(), out.name) != names_.end()) out.name = bus_ + "_" + out.name;
     if (const auto said = families_.find(identity.node); said != families_.end()) {
       out.family = said->second;
@@ -150,7 +148,7 @@ class Init {
     axis.heartbeat_ms = settings->heartbeat_ms;
     axis.increments = settings->increments;
     if (settings->unstated > 0)
-      context_->notices.push_back(fmt::format(
+      context_->notices.push_back(formatted(
           "node {}: {} settings are not held against the factory's, which the data of {} do not state: "
           "`backup` saves them all",
           axis.node, settings->unstated, axis.family));
@@ -165,7 +163,7 @@ class Init {
     std::error_code ignored;
     for (const auto& [path, content] : pdos_) {
       if (fs::exists(path, ignored))
-        return fail(Errc::refused, fmt::format("{} is there already", path.string()),
+        return fail(Errc::refused, formatted("{} is there already", path.string()),
                     "move it away; nothing was written");
     }
     for (const auto& [path, content] : pdos_)
@@ -181,15 +179,15 @@ class Init {
                             axis.parameters.size(), report::text_or_null(axis.pdo_file)});
       if (axis.guessed)
         context_->notices.push_back(
-            fmt::format("node {}: its identity fits {} (a guess, not proof); hold it against the nameplate",
-                        axis.node, axis.family));
+            formatted("node {}: its identity fits {} (a guess, not proof); hold it against the nameplate",
+                      axis.node, axis.family));
       if (axis.family.empty())
-        context_->notices.push_back(fmt::format("node {}: no family fits; it stands in comments", axis.node));
+        context_->notices.push_back(formatted("node {}: no family fits; it stands in comments", axis.node));
     }
     report::Record out{{"file", file_.string()}, {"bus", bus_}, {"axes", std::move(table)}};
     if (!context_->dry_run)
       context_->tell(
-          fmt::format("{} is written: give the axes their names, then `cabinet check`\n", file_.string()));
+          formatted("{} is written: give the axes their names, then `cabinet check`\n", file_.string()));
     return out;
   }
 
@@ -206,7 +204,7 @@ Result<Value> run_cabinet_init(Context& context, const Arguments& arguments) {
   if (!families) return fail(families.error());
   const auto name = arguments.has("--name") ? std::string(arguments.text("--name")) : std::string("main");
   if (!cabinet::is_name(name))
-    return fail(Errc::usage, fmt::format("'{}' cannot be the name of a bus", name),
+    return fail(Errc::usage, formatted("'{}' cannot be the name of a bus", name),
                 "a letter first, then letters, digits, `_` and `-`; `all` is no name");
   const auto file = arguments.has("file") ? fs::path(arguments.text("file")) : fs::path("cabinet.toml");
   return Init(context, file, name, std::move(*families)).run();

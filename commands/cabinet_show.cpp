@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_states.hpp"
@@ -41,7 +41,7 @@ std::string state_text(const AxisState& look, bool chinese) {
 
 std::string axis_mode_text(const AxisState& look) {
   if (!look.mode) return "-";
-  return look.mode_word.empty() ? fmt::format("{}", *look.mode) : look.mode_word;
+  return look.mode_word.empty() ? formatted("{}", *look.mode) : look.mode_word;
 }
 
 std::string fault_text(const AxisState& look, std::size_t columns = std::string::npos) {
@@ -51,7 +51,7 @@ std::string fault_text(const AxisState& look, std::size_t columns = std::string:
 }
 
 std::string position_text(const AxisState& look) {
-  return look.position ? fmt::format("{} {}", number_text(look.position->value), look.position->unit) : "-";
+  return look.position ? formatted("{} {}", number_text(look.position->value), look.position->unit) : "-";
 }
 
 /// Of a table that has 80 columns: the words of CAN are long.
@@ -115,7 +115,7 @@ class Differences {
 
   /// Why an axis is not held against the file: it may be another drive.
   void tell(const cabinet::Axis& axis, const Error& error) {
-    auto text = fmt::format("axis {}: {}", axis.name, error.message);
+    auto text = formatted("axis {}: {}", axis.name, error.message);
     if (told_.insert(text).second) context_->notices.push_back(std::move(text));
   }
 
@@ -134,7 +134,7 @@ Value or_null(const auto& optional) { return optional ? Value(*optional) : Value
 Value differ_cell(const AxisState& look, const Differences& differences) {
   const auto different = differences.of(look);
   if (!different || !differences.waits(look)) return or_null(different);
-  return fmt::format("{} restart", *different);
+  return formatted("{} restart", *different);
 }
 
 Record axis_record(const AxisState& look, const Differences& differences) {
@@ -202,7 +202,7 @@ class WatchingAxes {
   void take(const std::vector<AxisState>& looks, double seconds) {
     for (const auto& look : looks) {
       if (view_)
-        view_->set(look.axis->name, {look.axis->name, fmt::format("{}", look.axis->node), network_text(look),
+        view_->set(look.axis->name, {look.axis->name, formatted("{}", look.axis->node), network_text(look),
                                      state_text(look, context_->chinese), axis_mode_text(look),
                                      fault_text(look), position_text(look), differ_text(look)});
       else
@@ -214,15 +214,15 @@ class WatchingAxes {
   std::string differ_text(const AxisState& look) const {
     const auto different = differences_->of(look);
     if (!different) return "-";
-    return differences_->waits(look) ? fmt::format("{} restart", *different) : fmt::format("{}", *different);
+    return differences_->waits(look) ? formatted("{} restart", *different) : formatted("{}", *different);
   }
 
   /// A position changes all the time: it is told with what else changes.
   void take_line(const AxisState& look, double seconds) {
-    auto text = fmt::format("{}  {}  {}  {}", network_text(look), state_text(look, context_->chinese),
-                            axis_mode_text(look), fault_text(look));
+    auto text = formatted("{}  {}  {}  {}", network_text(look), state_text(look, context_->chinese),
+                          axis_mode_text(look), fault_text(look));
     if (const auto different = differences_->of(look); different.value_or(0) > 0)
-      text += fmt::format("  {} differ", *different);
+      text += formatted("  {} differ", *different);
     if (differences_->waits(look)) text += "  restart";
     auto& before = lines_[look.axis];
     if (text == before) return;
@@ -230,7 +230,7 @@ class WatchingAxes {
     Record record{{"time", seconds}};
     for (auto& field : axis_record(look, *differences_)) record.push_back(std::move(field));
     context_->emit(record,
-                   fmt::format("{:8.3f} s  {}  {}  {}", seconds, look.axis->name, text, position_text(look)));
+                   formatted("{:8.3f} s  {}  {}  {}", seconds, look.axis->name, text, position_text(look)));
   }
 
   Context* context_;

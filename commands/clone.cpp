@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/node_list.hpp"
@@ -34,7 +34,7 @@ Result<Value> run_clone(Context& context, const Arguments& arguments) {
   if (!to) return fail(to.error());
   if (from->size() != 1) return fail(Errc::usage, "--from takes one node");
   if (std::find(to->begin(), to->end(), from->front()) != to->end())
-    return fail(Errc::usage, fmt::format("node {} cannot be cloned into itself", from->front()));
+    return fail(Errc::usage, formatted("node {} cannot be cloned into itself", from->front()));
   std::vector<std::uint8_t> all = *to;
   all.push_back(from->front());
   if (const auto right = context.hold_family(all, context.profile, true); !right) return fail(right.error());
@@ -46,8 +46,8 @@ Result<Value> run_clone(Context& context, const Arguments& arguments) {
   bool failed = false;
   for (std::size_t i = 0; i < to->size() && !failed; ++i) {
     const auto node = (*to)[i];
-    auto done = settings::put_into(context, backup, fmt::format("node {}", from->front()), node,
-                                   fmt::format("before-clone-node-{}.json", node),
+    auto done = settings::put_into(context, backup, formatted("node {}", from->front()), node,
+                                   formatted("before-clone-node-{}.json", node),
                                    {.choice = {.force = arguments.has("--force")},
                                     .keep = arguments.has("--keep"),
                                     .unlock = arguments.has("--unlock"),

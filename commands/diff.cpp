@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "command/command.hpp"
@@ -42,13 +42,13 @@ Result<Operand> parse_operand(std::string_view word, settings::LineReader* lines
   if (word.starts_with(kNode)) {
     const auto number = parse_digits(word.substr(kNode.size()), 10);
     if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
-      return fail(Errc::usage, fmt::format("'{}' is not a node", word), "write node:1 to node:127");
+      return fail(Errc::usage, formatted("'{}' is not a node", word), "write node:1 to node:127");
     out.node = static_cast<std::uint8_t>(*number);
     return out;
   }
   auto source = settings::open_backup(word, lines);
   if (!source) {
-    if (parse_digits(word, 10)) source.error().hint = fmt::format("write a drive as {}{}", kNode, word);
+    if (parse_digits(word, 10)) source.error().hint = formatted("write a drive as {}{}", kNode, word);
     return fail(source.error());
   }
   out.source = std::move(*source);
@@ -110,7 +110,7 @@ class Difference {
     const auto needy = std::find_if(operands_.begin(), operands_.end(),
                                     [](const Operand& operand) { return !operand.source; });
     if (profile_ != nullptr || needy == operands_.end()) return {};
-    return fail(Errc::usage, fmt::format("{}: which family?", needy->word),
+    return fail(Errc::usage, formatted("{}: which family?", needy->word),
                 "add -d FAMILY; `drives` lists families");
   }
 
@@ -127,8 +127,8 @@ class Difference {
     const auto left = std::erase_if(
         sides_[i].values, [&](const auto& value) { return unreached_[1 - i].count(value.first) != 0; });
     if (left > 0)
-      context_->notices.push_back(fmt::format("{} values of {} are not compared: {} was read over Modbus",
-                                              left, operands_[i].word, operands_[1 - i].word));
+      context_->notices.push_back(formatted("{} values of {} are not compared: {} was read over Modbus", left,
+                                            operands_[i].word, operands_[1 - i].word));
   }
 
   /// The node that a side without one of its own stands for.
@@ -150,8 +150,8 @@ class Difference {
     }
     if (!family_.empty() && family_ != backup->family)
       return fail(Errc::negative,
-                  fmt::format("{} is for {}, {} for {}: they cannot be compared", operands_[1 - i].word,
-                              family_, operands_[i].word, backup->family));
+                  formatted("{} is for {}, {} for {}: they cannot be compared", operands_[1 - i].word,
+                            family_, operands_[i].word, backup->family));
     family_ = backup->family;
     return settings::side_of(*backup, operands_[i].word);
   }
@@ -161,10 +161,10 @@ class Difference {
     const auto& operand = operands_[i];
     if (!family_.empty() && family_ != profile_->family)
       return fail(Errc::refused,
-                  fmt::format("{} is for {}, not for {}", operands_[1 - i].word, family_, profile_->family),
+                  formatted("{} is for {}, not for {}", operands_[1 - i].word, family_, profile_->family),
                   "give the backup's family with -d if the drive really is one");
     if (context_->front_end == nullptr)
-      return fail(Errc::usage, fmt::format("{}: there is no bus to open here", operand.word));
+      return fail(Errc::usage, formatted("{}: there is no bus to open here", operand.word));
     const auto session = context_->front_end->open_bus();
     if (!session) return fail(session.error());
     if (const auto right = context_->hold_family(std::span(&operand.node, 1), profile_, false); !right)

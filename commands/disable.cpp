@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
+#include "base/format.hpp"
 #include "canopen/node_list.hpp"
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
@@ -57,14 +57,14 @@ void tell_power_off(Context& context, std::uint8_t node, const motion::PowerDown
                         done.outcome ? Value(done_word) : Value("failed"),
                         Value(result_text(done, done_word)),
                         done.outcome ? Value() : show::error_record(done.outcome.error())});
-  for (const auto& note : done.notes) context.notices.push_back(fmt::format("node {}: {}", node, note));
+  for (const auto& note : done.notes) context.notices.push_back(formatted("node {}: {}", node, note));
   if (energised)
     context.notices.push_back(
         done.statusword
-            ? fmt::format("node {} is still energised: {}; {}", node, drive::name(done.state()),
-                          aim == motion::PowerAim::disable ? "repeat `disable`, or switch off the supply"
-                                                           : "`disable` de-energises it")
-            : fmt::format("NODE {} MAY BE ENERGISED, STATE UNKNOWN: SWITCH OFF THE SUPPLY", node));
+            ? formatted("node {} is still energised: {}; {}", node, drive::name(done.state()),
+                        aim == motion::PowerAim::disable ? "repeat `disable`, or switch off the supply"
+                                                         : "`disable` de-energises it")
+            : formatted("NODE {} MAY BE ENERGISED, STATE UNKNOWN: SWITCH OFF THE SUPPLY", node));
 }
 
 /// The end state of a node is that of all its axes.
@@ -76,7 +76,7 @@ void stop_other_axes(Context& context, std::uint8_t node, motion::PowerAim aim) 
           motion::stop_axes(*context.session, node, others, aim == motion::PowerAim::disable);
       !stopped)
     context.errors.push_back(stopped.error());
-  for (const auto& axis : others) context.notices.push_back(fmt::format("node {}: {}", node, axis.text()));
+  for (const auto& axis : others) context.notices.push_back(formatted("node {}: {}", node, axis.text()));
 }
 
 Value planned_disable(Context& context, motion::PowerAim aim) {
@@ -119,7 +119,7 @@ Result<Value> power_down(Context& context, motion::PowerAim aim, std::string_vie
       there.emplace(plans[i].node, &done[i]);
   if (there.empty())
     return fail(
-        Errc::timeout, fmt::format("no node answered on {}", context.session->url()),
+        Errc::timeout, formatted("no node answered on {}", context.session->url()),
         "drives that are energised there stay so: switch off the supply; then check cable, termination and bitrate");
   auto table = state_table();
   context.nodes.clear();

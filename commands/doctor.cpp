@@ -1,12 +1,12 @@
-#include <fmt/format.h>
 
+#include "traffic/doctor.hpp"
+#include "base/format.hpp"
 #include "base/signal_wait.hpp"
 #include "can/socketcan.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "session/open_bus.hpp"
 #include "session/open_register_line.hpp"
-#include "traffic/doctor.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -30,10 +30,10 @@ Result<Findings> examine_url(Context& context, const std::string& url,
   if (session::is_modbus(url))
     return fail(
         Errc::usage, "`doctor` looks at CAN and EtherCAT, not at Modbus",
-        fmt::format("`scan --bus {}` asks all addresses, and says what comes instead of an answer", url));
+        formatted("`scan --bus {}` asks all addresses, and says what comes instead of an answer", url));
   if (session::canonical_url(context.front_end->bus_url()) != url)
-    return fail(Errc::usage, fmt::format("{} is looked at as the bus of the line", url),
-                fmt::format("`doctor --bus {}`", url));
+    return fail(Errc::usage, formatted("{} is looked at as the bus of the line", url),
+                formatted("`doctor --bus {}`", url));
   const auto session = context.front_end->open_bus();
   if (!session) return fail(session.error());
   return traffic::examine(**session, options);
@@ -48,7 +48,7 @@ std::vector<std::string> urls_of(const Context& context, const Arguments& argume
 Result<Value> run_doctor(Context& context, const Arguments& arguments) {
   if (arguments.has("--node") && arguments.text("--node") != "all")
     return fail(Errc::usage, "`doctor` looks at a bus and all of its nodes, not at one",
-                fmt::format("`scan -n {}` asks it; leave -n out for the bus", arguments.text("--node")));
+                formatted("`scan -n {}` asks it; leave -n out for the bus", arguments.text("--node")));
   traffic::DoctorOptions options;
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
@@ -65,10 +65,10 @@ Result<Value> run_doctor(Context& context, const Arguments& arguments) {
   }
   if (urls.empty()) all.push_back(traffic::examine_machine());
   if (const auto faults = traffic::faults_in(all); faults > 0)
-    context.errors.push_back(make_error(
-        Errc::negative,
-        faults == 1 ? std::string("1 fault was found") : fmt::format("{} faults were found", faults),
-        "begin with the first; each says what mends it"));
+    context.errors.push_back(
+        make_error(Errc::negative,
+                   faults == 1 ? std::string("1 fault was found") : formatted("{} faults were found", faults),
+                   "begin with the first; each says what mends it"));
   return findings_value(all);
 }
 

@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/shared_profile.hpp"
@@ -33,7 +33,7 @@ Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
   for (const auto& family : drive::find_families(context.drive_folders)) {
     const auto rules = drive::load_rules(family);
     if (!rules && rules.error().code == Errc::refused)
-      context.notices.push_back(fmt::format("{}; {}", rules.error().message, rules.error().hint));
+      context.notices.push_back(formatted("{}; {}", rules.error().message, rules.error().hint));
     const auto name = rules ? rules->name : std::string();
     const auto name_zh = rules ? rules->name_zh : std::string();
     table.rows.push_back({family.name, report::text_or_null(rules ? rules->vendor : std::string()),

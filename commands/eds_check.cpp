@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/pdo_index.hpp"
 #include "base/standard_input.hpp"
 #include "base/text.hpp"
@@ -50,7 +50,7 @@ report::Table findings_of(const od::EdsFile& file) {
 std::string modes_of(const od::EsiLayout& layout) {
   std::string out;
   for (const auto& mode : layout.modes)
-    append(out, mode.description.empty() ? mode.name : fmt::format("{} ({})", mode.name, mode.description));
+    append(out, mode.description.empty() ? mode.name : formatted("{} ({})", mode.name, mode.description));
   return out;
 }
 
@@ -107,7 +107,7 @@ report::Record finding_record(const std::string& path, const Error& error, bool 
 }
 
 Error errors_error(const std::string& path, std::size_t errors) {
-  return make_error(Errc::negative, fmt::format("{}: {} error{}", path, errors, errors == 1 ? "" : "s"),
+  return make_error(Errc::negative, formatted("{}: {} error{}", path, errors, errors == 1 ? "" : "s"),
                     "the remedy column says what to change; everything else in the file is usable");
 }
 
@@ -135,7 +135,7 @@ class Check {
       const auto all = od::read_all_esi(text, name.path);
       if (!all) return refuse(word, all.error());
       for (const auto& file : *all)
-        add(file.devices == 1 ? word : fmt::format("{}#{}", name.path, file.number), file);
+        add(file.devices == 1 ? word : formatted("{}#{}", name.path, file.number), file);
       return;
     }
     const auto file = od::read_esi(text, name.path, name.device);

@@ -1,10 +1,10 @@
-#include <fmt/format.h>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <vector>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
 #include "drive/cia402.hpp"
@@ -90,7 +90,7 @@ Result<void> ask(Context& context, motion::Motion& motion) {
   if (context.dry_run) return {};
   const auto mode = motion::read_mode(*context.session, motion.node());
   if (!mode) return fail(mode.error());
-  return context.confirm(fmt::format(
+  return context.confirm(formatted(
       "Energise node {} in mode {} and leave it energised? It will not be supervised, and the motor may move.",
       motion.node(), motion::mode_text(*context.profile, *mode, context.chinese)));
 }
@@ -158,7 +158,7 @@ class Enabling {
     const auto state = motion::Power(*context_->session, *context_->profile, motion.node()).state();
     if (!state || *state == drive::DriveState::operation_enabled) return {};
     return fail(drive_error(Errc::negative, motion.node(),
-                            fmt::format("was enabled but did not stay so: it is in {}", drive::name(*state)),
+                            formatted("was enabled but did not stay so: it is in {}", drive::name(*state)),
                             "see `status` and `fault show`"));
   }
 
@@ -176,7 +176,7 @@ class Enabling {
       }
       if (done) {
         context_->notices.push_back(
-            fmt::format("node {} had been enabled by this line; it has been stopped and disabled", node));
+            formatted("node {} had been enabled by this line; it has been stopped and disabled", node));
         taken_back_.insert(node);
         continue;
       }

@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 #include <memory>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/shared_profile.hpp"
@@ -55,8 +55,8 @@ Result<Shelf> open_shelf(Context& context) {
     auto profile = drive::shared_profile(family.name, context.drive_folders);
     auto topics = profile ? drive::load_own_topics(**profile) : Result<std::vector<drive::Topic>>();
     if (!profile || !topics) {
-      context.notices.push_back(fmt::format(
-          "{}; {} is left out", (profile ? topics.error() : profile.error()).message, family.name));
+      context.notices.push_back(
+          formatted("{}; {} is left out", (profile ? topics.error() : profile.error()).message, family.name));
       continue;
     }
     leave_out_own(*topics);
@@ -166,8 +166,8 @@ tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf,
             ? "`explain` lists the topics; `fault list` looks for words in faults"
             : "`explain` lists the topics; `param search WORD` and `fault list` look for words in parameters and faults";
   return fail(Errc::negative,
-              family.empty() ? fmt::format("nothing is called '{}' or mentions it", said)
-                             : fmt::format("nothing of {} is called '{}' or mentions it", family, said),
+              family.empty() ? formatted("nothing is called '{}' or mentions it", said)
+                             : formatted("nothing of {} is called '{}' or mentions it", family, said),
               std::move(hint));
 }
 
@@ -185,9 +185,8 @@ Result<report::Value> run_explain(Context& context, const Arguments& arguments) 
     all = show::explanations(query, shelf->libraries, context.chinese);
   }
   if (is_of_the_standard_alone(context, said, all))
-    return fail(Errc::negative,
-                fmt::format("not on this drive: {} has no '{}'", context.profile->family, said),
-                fmt::format("`explain {}` without -d shows the meaning in the standard", said));
+    return fail(Errc::negative, formatted("not on this drive: {} has no '{}'", context.profile->family, said),
+                formatted("`explain {}` without -d shows the meaning in the standard", said));
   if (all.empty()) return no_entry_found(context, *shelf, said);
   return told(context, all, in_families);
 }

@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "show/fault_records.hpp"
 #include "show/records.hpp"
@@ -14,7 +14,7 @@ constexpr Parameter kFaultListParameters[] = {
 };
 
 std::string listed_code(const drive::Fault& fault) {
-  return fault.code ? fmt::format("0x{:04X}", *fault.code) : std::string();
+  return fault.code ? formatted("0x{:04X}", *fault.code) : std::string();
 }
 
 bool wanted_fault(const drive::Fault& fault, std::string_view pattern) {
@@ -29,7 +29,7 @@ Result<report::Value> run_fault_list(Context& context, const Arguments& argument
   for (const auto& fault : context.profile->faults)
     if (wanted_fault(fault, pattern)) found.push_back(&fault);
   if (found.empty())
-    return fail(Errc::negative, fmt::format("no fault of {} matches '{}'", context.profile->family, pattern),
+    return fail(Errc::negative, formatted("no fault of {} matches '{}'", context.profile->family, pattern),
                 "`fault list` shows all");
   if (found.size() > show::kFewFaults) return report::Value(show::fault_table(found, context.chinese));
   report::List out;

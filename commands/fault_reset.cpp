@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 
+#include "motion/fault_reset.hpp"
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "drive/standard_objects.hpp"
-#include "motion/fault_reset.hpp"
 #include "show/planned_messages.hpp"
 #include "show/records.hpp"
 
@@ -21,8 +21,8 @@ report::Table reset_table() {
 }
 
 std::string whom_reset(const Context& context) {
-  return context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
-                                   : fmt::format("{} nodes", context.nodes.size());
+  return context.nodes.size() == 1 ? formatted("node {}", context.nodes.front())
+                                   : formatted("{} nodes", context.nodes.size());
 }
 
 void add_failure(Context& context, report::Table& table, std::uint8_t node, const Error& error) {
@@ -39,7 +39,7 @@ Value planned_resets(Context& context) {
       continue;
     }
     if (planned->empty())
-      context.notices.push_back(fmt::format("node {} is not in Fault: nothing would be sent", node));
+      context.notices.push_back(formatted("node {} is not in Fault: nothing would be sent", node));
     messages.insert(messages.end(), planned->begin(), planned->end());
   }
   return show::planned_messages(context, messages);
@@ -47,7 +47,7 @@ Value planned_resets(Context& context) {
 
 Result<Value> run_reset(Context& context, const Arguments&) {
   if (context.dry_run) return planned_resets(context);
-  const auto question = fmt::format("Reset the fault of {}? The cause must be gone.", whom_reset(context));
+  const auto question = formatted("Reset the fault of {}? The cause must be gone.", whom_reset(context));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   auto table = reset_table();
   for (const auto node : context.nodes) {
@@ -76,7 +76,7 @@ Result<Value> run_clear(Context& context, const Arguments&) {
   }
   if (context.dry_run) return show::planned_messages(context, planned);
   if (planned.empty()) return Value(std::move(table));
-  const auto question = fmt::format("Clear the fault history of {}?", whom_reset(context));
+  const auto question = formatted("Clear the fault history of {}?", whom_reset(context));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());
   for (const auto& each : planned) {
     const auto node = each.node;

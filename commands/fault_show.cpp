@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "canopen/emergency.hpp"
 #include "command/command.hpp"
 #include "drive/cia402.hpp"
@@ -24,7 +24,7 @@ using report::Value;
 constexpr std::uint8_t kMostHistory = 254;
 
 std::string shown_code(std::uint16_t code, const std::string& words) {
-  return fmt::format("0x{:04X} {}", code, words);
+  return formatted("0x{:04X} {}", code, words);
 }
 
 constexpr std::string_view kMissing = "the drive does not have it";
@@ -88,7 +88,7 @@ class FaultReport {
 
   std::string title_of(const drive::Fault& fault) const {
     if (!fault.panel.empty()) return fault.panel;
-    return fault.code ? fmt::format("0x{:04X}", *fault.code) : "fault";
+    return fault.code ? formatted("0x{:04X}", *fault.code) : "fault";
   }
 
   void add_state(const std::optional<Bytes>& statusword) {
@@ -117,7 +117,7 @@ class FaultReport {
     const auto answer = read(objects::kErrorRegister);
     const auto bits = answer ? static_cast<std::uint8_t>(load_le(*answer)) : std::uint8_t{0};
     out_.push_back({"register_text",
-                    answer ? fmt::format("0x{:02X} {}", bits, canopen::error_register_text(bits))
+                    answer ? formatted("0x{:02X} {}", bits, canopen::error_register_text(bits))
                            : missing(objects::kErrorRegister),
                     Show::text, "error register 1001h"});
     out_.push_back({"error_register", answer ? Value(bits) : Value(), Show::json});

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/version.hpp"
 #include "command/command.hpp"
 #include "motion/abandoned.hpp"
@@ -26,7 +26,7 @@ constexpr Parameter kGatewayParameters[] = {
 /// Whoever reaches the gateway can do it: there is no login.
 Result<void> confirm_open(const Context& context, const gateway::Address& address, bool writes) {
   if (!address.is_local())
-    if (const auto sure = context.confirm(fmt::format(
+    if (const auto sure = context.confirm(formatted(
             "Listen at {}? CiA 309-3 has neither login nor encryption: whoever reaches this port can {} every "
             "object of every drive on {}.",
             address.text(), writes ? "read and write" : "read", context.session->url()));
@@ -34,9 +34,9 @@ Result<void> confirm_open(const Context& context, const gateway::Address& addres
       return sure;
   if (!writes) return {};
   return context.confirm(
-      fmt::format("Let every client at {} write to the drives on {} and send NMT commands? They can energise "
-                  "and move motors.",
-                  address.text(), context.session->url()));
+      formatted("Let every client at {} write to the drives on {} and send NMT commands? They can energise "
+                "and move motors.",
+                address.text(), context.session->url()));
 }
 
 report::Record description(const Context& context, const gateway::Address& address, bool writes) {
@@ -62,7 +62,7 @@ Result<void> serve(Context& context, gateway::Listener& listener, bool writes) {
       *context.session,
       {.writes = writes,
        .version = two_numbers(version()),
-       .tell = [&](std::string_view line) { context.tell(fmt::format("notice: {}\n", line)); },
+       .tell = [&](std::string_view line) { context.tell(formatted("notice: {}\n", line)); },
        .energises = [&](auto node, auto object,
                         auto data) { return written.note(context.profile, node, object, data); },
        .stop = [&](const auto& nodes) { stop_and_tell(context, written, nodes); }});
@@ -87,8 +87,8 @@ Result<report::Value> run_gateway(Context& context, const Arguments& arguments) 
   const auto listener = gateway::Listener::open(*address);
   if (!listener) return fail(listener.error());
   context.front_end->wait_for_no_reader();
-  context.emit(told, fmt::format("gateway of {} at {}, {}; Ctrl-C ends it", context.session->url(),
-                                 address->text(), writes ? "clients may write" : "read only"));
+  context.emit(told, formatted("gateway of {} at {}, {}; Ctrl-C ends it", context.session->url(),
+                               address->text(), writes ? "clients may write" : "read only"));
   if (const auto served = serve(context, **listener, writes); !served) return fail(served.error());
   return report::Value();
 }

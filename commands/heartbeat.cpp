@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "cabinet/cabinet.hpp"
@@ -83,9 +83,9 @@ Result<std::string> by_node(const Context& context, const std::string& word) {
   for (const auto* watching : context.axes)
     if (watching->bus != axis->bus)
       return fail(Errc::usage,
-                  fmt::format("axis {} is on bus {}, {} on bus {}: no heartbeat gets from one to the other",
-                              name, axis->bus, watching->name, watching->bus));
-  return fmt::format("{}{}", axis->node, word.substr(equals));
+                  formatted("axis {} is on bus {}, {} on bus {}: no heartbeat gets from one to the other",
+                            name, axis->bus, watching->name, watching->bus));
+  return formatted("{}{}", axis->node, word.substr(equals));
 }
 
 Result<std::vector<settings::HeartbeatWatch>> watches_of(const Context& context, const Arguments& arguments) {
@@ -130,7 +130,7 @@ std::string watched_text(const Supervision& one) {
   if (one.entries.empty()) return "none: it has no 1016h";
   std::string out;
   for (const auto& entry : one.entries)
-    if (entry.node != 0) append(out, fmt::format("node {} ({})", entry.node, to_string(entry.time)));
+    if (entry.node != 0) append(out, formatted("node {} ({})", entry.node, to_string(entry.time)));
   return out.empty() ? std::string("nobody") : out;
 }
 

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "command/restarted_option.hpp"
 #include "drive/cia402.hpp"
@@ -80,7 +80,7 @@ Record identity_record(const session::Identity& node, std::span<const drive::Fam
     const auto& name = context.chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name;
     const auto maker = rules.vendor.empty() ? std::string() : rules.vendor + " ";
     out.push_back(
-        {"family", fmt::format("{} ({}{}), as you said", profile->family, maker, name), report::Show::text});
+        {"family", formatted("{} ({}{}), as you said", profile->family, maker, name), report::Show::text});
     out.push_back({"family", profile->family, report::Show::json});
   } else {
     const auto text = show::guess_text(guesses);

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "canopen/node_id.hpp"
 #include "command/duration_option.hpp"
@@ -76,7 +76,7 @@ Result<ScanWish> scan_wish(const Arguments& arguments) {
   const auto number = parse_integer(arguments.text("--assign"));
   const auto node = number ? number->as_unsigned() : std::nullopt;
   if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-    return fail(Errc::usage, fmt::format("'{}' is not a node-ID", arguments.text("--assign")),
+    return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("--assign")),
                 "node-IDs are 1 to 127");
   out.first = static_cast<std::uint8_t>(*node);
   return out;
@@ -84,11 +84,11 @@ Result<ScanWish> scan_wish(const Arguments& arguments) {
 
 std::string progress_text(const session::LssProgress& at) {
   return at.again
-             ? fmt::format(
+             ? formatted(
                    "answers came late, asked again: LSS slaves found: {}; of the next identity {} of {} bits are known",
                    at.found, at.known, at.bits)
-             : fmt::format("LSS slaves found: {}; of the next identity {} of {} bits are known", at.found,
-                           at.known, at.bits);
+             : formatted("LSS slaves found: {}; of the next identity {} of {} bits are known", at.found,
+                         at.known, at.bits);
 }
 
 Result<std::vector<session::LssFound>> find(Context& context, const ScanWish& wish) {
@@ -113,7 +113,7 @@ void tell_found(Context& context, const ScanWish& wish, std::span<const session:
     if (each.slaves > 1)
       context.errors.push_back(make_error(
           Errc::refused,
-          fmt::format("{} LSS slaves have one identity: {}", each.slaves, to_string(each.address)),
+          formatted("{} LSS slaves have one identity: {}", each.slaves, to_string(each.address)),
           "LSS cannot tell them apart: switch all but one of them off, and take one after the other"));
   if (!found.empty() || wish.first) return;
   context.notices.push_back(
@@ -165,7 +165,7 @@ std::string question_lss_scan(std::span<const session::LssFound> found, std::spa
   std::string out =
       found.size() == 1 ? "Give this LSS slave its node-ID?" : "Give these LSS slaves their node-IDs?";
   for (std::size_t i = 0; i < found.size(); ++i)
-    out += fmt::format("{} node {}: {}", i == 0 ? "" : ";", nodes[i], to_string(found[i].address));
+    out += formatted("{} node {}: {}", i == 0 ? "" : ";", nodes[i], to_string(found[i].address));
   return out + ". Each starts with it at once.";
 }
 
@@ -177,8 +177,7 @@ Value planned_lss_scan(std::span<const session::LssFound> found, std::span<const
     std::vector<canopen::LssRequest> requests{canopen::lss_set_node(nodes[i])};
     if (keep) requests.push_back(canopen::lss_store());
     const auto frames = lss_planned_frames({found[i].address}, requests);
-    for (const auto& row : frames.table()->rows)
-      table.rows.push_back({nodes[i], row.front()});
+    for (const auto& row : frames.table()->rows) table.rows.push_back({nodes[i], row.front()});
   }
   return Value(std::move(table));
 }
@@ -187,7 +186,7 @@ Result<std::vector<std::uint8_t>> nodes_from(std::uint8_t first, std::size_t cou
   std::vector<std::uint8_t> out;
   for (std::size_t i = 0; i < count; ++i) {
     if (first + i > canopen::kLastNode)
-      return fail(Errc::usage, fmt::format("{} slaves from node-ID {} on go beyond 127", count, first),
+      return fail(Errc::usage, formatted("{} slaves from node-ID {} on go beyond 127", count, first),
                   "begin lower");
     out.push_back(static_cast<std::uint8_t>(first + i));
   }
@@ -203,7 +202,7 @@ std::vector<Given> give(Context& context, std::span<const session::LssFound> fou
   for (std::size_t i = 0; i < found.size(); ++i) {
     const session::LssSlave slave{found[i].address, canopen::kUnconfigured};
     context.show_progress(
-        fmt::format("node-ID {} is given: LSS slave {} of {}", nodes[i], i + 1, found.size()));
+        formatted("node-ID {} is given: LSS slave {} of {}", nodes[i], i + 1, found.size()));
     out.push_back({nodes[i], settings::give_lss_node(context, slave, {slave.address, nodes[i], keep})});
     const auto& outcome = out.back().outcome;
     if (outcome.error) context.errors.push_back(*outcome.error);
@@ -225,7 +224,7 @@ Result<Value> assign(Context& context, const ScanWish& wish, std::vector<session
   const auto todo = all.first(static_cast<std::size_t>(configured - found.begin()));
   for (const auto& each : all.subspan(todo.size()))
     context.notices.push_back(
-        fmt::format("node {} answers fastscan, but has a node-ID: it was left alone", *each.node));
+        formatted("node {} answers fastscan, but has a node-ID: it was left alone", *each.node));
   const auto nodes = nodes_from(*wish.first, todo.size());
   if (!nodes) return fail(nodes.error());
   if (context.errors.empty() && todo.empty())

@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "canopen/node_id.hpp"
 #include "command/lss_options.hpp"
@@ -32,29 +32,29 @@ Result<std::uint8_t> new_node(const Arguments& arguments) {
   const bool good =
       node && ((*node >= canopen::kFirstNode && *node <= canopen::kLastNode) || *node == kUnconfigured);
   if (!good)
-    return fail(Errc::usage, fmt::format("'{}' is not a node-ID", arguments.text("new")),
+    return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("new")),
                 "node-IDs are 1 to 127; 255 takes the node-ID away (CiA 305)");
   return static_cast<std::uint8_t>(*node);
 }
 
 std::string node_text(std::uint8_t node) {
-  return node == kUnconfigured ? std::string("no node-ID") : fmt::format("node-ID {}", node);
+  return node == kUnconfigured ? std::string("no node-ID") : formatted("node-ID {}", node);
 }
 
 std::string question_lss_set_node(session::Session& session, const session::LssSlave& slave,
                                   const settings::LssNodeChange& change) {
   if (settings::has_lss_node(slave, change))
-    return fmt::format("Store {} in the LSS slave with {}? It has it already.", node_text(change.to),
-                       to_string(slave.address));
-  auto out = fmt::format("Give {} to the LSS slave with {}?", node_text(change.to), to_string(slave.address));
+    return formatted("Store {} in the LSS slave with {}? It has it already.", node_text(change.to),
+                     to_string(slave.address));
+  auto out = formatted("Give {} to the LSS slave with {}?", node_text(change.to), to_string(slave.address));
   if (slave.is_unconfigured()) return out + " It has none, and starts with it.";
   if (!slave.node) return out + " It does not tell which it has; the new one holds when it starts again.";
-  out += fmt::format(
+  out += formatted(
       " It is node {} now; its communication is reset (NMT): unstored PDOs, COB-IDs and heartbeats "
       "are lost, and a moving axis may lose its control.",
       *slave.node);
   if (const auto by = settings::shared_lss_node(session, slave); !by.empty())
-    out += fmt::format(" Another drive has this node-ID too ({}): it hears the reset as well.", by);
+    out += formatted(" Another drive has this node-ID too ({}): it hears the reset as well.", by);
   return out;
 }
 

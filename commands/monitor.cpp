@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <cmath>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "can/error_frame.hpp"
 #include "command/command.hpp"
@@ -50,7 +50,7 @@ Result<std::uint32_t> bitrate_option(const Arguments& arguments) {
   if (factor > 1) text.remove_suffix(1);
   const auto number = parse_digits(text, 10);
   if (!number || *number == 0 || *number > 1'000'000 || *number * factor > 1'000'000)
-    return fail(Errc::usage, fmt::format("'{}' is not a bitrate", arguments.text("--bitrate")),
+    return fail(Errc::usage, formatted("'{}' is not a bitrate", arguments.text("--bitrate")),
                 "write 125k, 250k, 500k or 1M; CANopen has at most 1 Mbit/s");
   return static_cast<std::uint32_t>(*number * factor);
 }
@@ -151,7 +151,7 @@ class Monitor {
       if (!values.front()) continue;
       lifetimes_[i] = lifetime;
       log_->decoder().pdos().set(nodes[0], std::move(*values.front()));
-      traffic::tell_now(*context_, fmt::format("node {}: its PDO mapping was read again", nodes[0]));
+      traffic::tell_now(*context_, formatted("node {}: its PDO mapping was read again", nodes[0]));
     }
   }
 
@@ -165,8 +165,7 @@ class Monitor {
         ++lost_;
         log_->decoder().pdos().forget(event.node);
       }
-      const auto text =
-          fmt::format("ALARM {}", show::event_text(event, context_->profile, context_->chinese));
+      const auto text = formatted("ALARM {}", show::event_text(event, context_->profile, context_->chinese));
       log_->remark(event.time - begin_, "alarm", event.node, text, doubled ? "doubled" : "heartbeat-lost");
     }
   }
@@ -184,7 +183,7 @@ class Monitor {
   /// It is a part of what happened on the bus.
   void tell_bus(bool back, std::string_view line) {
     for (std::uint8_t node = 1; back && node <= 127; ++node) log_->decoder().pdos().forget(node);
-    log_->remark(context_->session->now() - begin_, "alarm", {}, fmt::format("ALARM {}", line),
+    log_->remark(context_->session->now() - begin_, "alarm", {}, formatted("ALARM {}", line),
                  back ? "bus-back" : "bus-lost");
     log_->flush();
     if (view_ != nullptr) view_->refresh(context_->session->now());

@@ -1,6 +1,6 @@
 #include "canopen/nmt.hpp"
+#include "base/format.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "command/command.hpp"
@@ -84,7 +84,7 @@ Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Bef
     if (entry.alive || entry.doubled) continue;
     auto error = drive_error(
         Errc::timeout, entry.node,
-        fmt::format("'{}' was sent, not confirmed: nothing was heard of the node", canopen::name(command)),
+        formatted("'{}' was sent, not confirmed: nothing was heard of the node", canopen::name(command)),
         "check node-ID, power and cable; `scan` shows who answers");
     if (stops)
       context.notices.push_back(error.message);
@@ -153,7 +153,7 @@ Result<void> refuse_stopped(const session::Session& session, const Before& entry
   return fail(drive_error(
       Errc::refused, entry.node,
       "it is stopped (NMT) and answers no SDO, so whether two drives have its node-ID is not known: not reset",
-      fmt::format("`nmt preop -n {}` first", entry.node)));
+      formatted("`nmt preop -n {}` first", entry.node)));
 }
 
 /// Whose drives they are is seen before what begins something is sent.

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "command/command.hpp"
@@ -50,7 +50,7 @@ Result<Plan> plan_of(const Arguments& arguments) {
     return fail(Errc::usage, "--life is for node guarding only: it needs --guard", "--guard 100ms --life 3");
   const auto life = parse_digits(arguments.text("--life"), 10);
   if (!life || *life < 1 || *life > 255)
-    return fail(Errc::usage, fmt::format("'{}' is not a life time factor", arguments.text("--life")),
+    return fail(Errc::usage, formatted("'{}' is not a life time factor", arguments.text("--life")),
                 "write 1..255");
   plan.life_factor = static_cast<std::uint32_t>(*life);
   return plan;
@@ -108,7 +108,7 @@ class Log {
       const auto text = show::notice_text(event, context_->profile, context_->chinese);
       report::Record record{
           {"time", time.count()}, {"node", event.node}, {"event", event_name(event)}, {"text", text}};
-      context_->emit(record, fmt::format("{:10.3f}  {}", time.count(), text));
+      context_->emit(record, formatted("{:10.3f}  {}", time.count(), text));
       if (context_->keeps_samples) events_.emplace_back(std::move(record));
     }
   }
@@ -176,16 +176,16 @@ class Log {
     std::string what;
     std::string hint = "try --guard 1s";
     if (row.lost > 0 && was_there(row)) {
-      what = fmt::format("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
+      what = formatted("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
       hint.clear();
     } else if (regular(row)) {
       return;
     } else if (row.told && *row.told) {
       const auto period = load_le(**row.told) & 0xFFFFU;
       what = period == 0 ? "sends no heartbeat"
-                         : fmt::format("no heartbeat came, although 1017h is {} ms", period);
+                         : formatted("no heartbeat came, although 1017h is {} ms", period);
       if (period == 0)
-        hint = fmt::format("`heartbeat set 500ms -n {}` switches it on; or {}", row.node, std::move(hint));
+        hint = formatted("`heartbeat set 500ms -n {}` switches it on; or {}", row.node, std::move(hint));
     } else if (answered(row)) {
       const auto code = row.told->error().abort_code;
       what = code == canopen::sdo_abort::kNoObject || code == canopen::sdo_abort::kNoSubIndex

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "drive/naming.hpp"
 #include "od/data_sheet.hpp"
@@ -41,7 +41,7 @@ od::EdsFile data_sheet_of(const drive::Profile& profile) {
 void add_values(const Context& context, const od::Entry& entry, report::Table& table) {
   const auto values = show::object_values(*context.profile, entry, context.chinese);
   if (values.empty()) return;
-  table.below.push_back(fmt::format("values of {}:", to_string(entry.address)));
+  table.below.push_back(formatted("values of {}:", to_string(entry.address)));
   for (const auto& value : values) table.below.push_back("  " + value);
 }
 
@@ -57,14 +57,14 @@ Result<report::Value> run_objects(Context& context, const Arguments& arguments) 
         shown.push_back(&entry);
       }
   if (records.empty())
-    return fail(Errc::negative, fmt::format("no object of {} matches '{}'", context.profile->family, pattern),
+    return fail(Errc::negative, formatted("no object of {} matches '{}'", context.profile->family, pattern),
                 "try a shorter word, or 0x60* for a range of indexes");
   auto table = show::object_table(std::move(records));
   if (parse_object_address(pattern))
     for (const auto* entry : shown) add_values(context, *entry, table);
   if (sheet.node_id != 0)
     context.notices.push_back(
-        fmt::format("{} is the configuration of node {}", context.profile->family, sheet.node_id));
+        formatted("{} is the configuration of node {}", context.profile->family, sheet.node_id));
   return report::Value(std::move(table));
 }
 

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "report/catalogue.hpp"
@@ -36,8 +36,8 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
     if (context.chinese)
       for (auto& group : groups) group = report::chinese_word(group);
     return fail(Errc::negative,
-                fmt::format("no parameter of {} matches '{}'", context.profile->family, pattern),
-                fmt::format("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
+                formatted("no parameter of {} matches '{}'", context.profile->family, pattern),
+                formatted("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
   }
   return report::Value(show::parameter_table(found, context.chinese));
 }

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "show/object_records.hpp"
@@ -44,8 +44,7 @@ Result<report::Value> run_param_search(Context& context, const Arguments& argume
   std::vector<const od::Parameter*> best;
   for (const auto& entry : found) best.push_back(entry.second);
   if (best.empty())
-    return fail(Errc::negative,
-                fmt::format("no parameter of {} mentions '{}'", context.profile->family, said),
+    return fail(Errc::negative, formatted("no parameter of {} mentions '{}'", context.profile->family, said),
                 "try a shorter word, or the Chinese or English one");
   return report::Value(show::parameter_table(best, context.chinese));
 }

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "command/assignments.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
@@ -41,8 +41,8 @@ Result<std::vector<WantedValue>> wanted_values(const Context& context, const Arg
     });
     if (same != out.end())
       return fail(Errc::usage,
-                  fmt::format("two values for one parameter: {}={} and {}={}", same->id, same->value,
-                              assignment.id, assignment.value),
+                  formatted("two values for one parameter: {}={} and {}={}", same->id, same->value,
+                            assignment.id, assignment.value),
                   "nothing was written; say each parameter once");
     out.push_back({*target, assignment.id, assignment.value});
   }

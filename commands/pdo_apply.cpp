@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
 #include "pdo/pdo_recipes.hpp"
@@ -35,8 +35,8 @@ Result<report::Value> run_pdo_apply(Context& context, const Arguments& arguments
     auto wanted = pdo::follow(*context.profile, present, file->pdos);
     if (wanted) return wanted;
     auto error = wanted.error();
-    error.message = fmt::format("{}{}: {}", arguments.text("file"),
-                                error.line ? fmt::format(":{}", *error.line) : std::string(), error.message);
+    error.message = formatted("{}{}: {}", arguments.text("file"),
+                              error.line ? formatted(":{}", *error.line) : std::string(), error.message);
     return fail(std::move(error));
   };
   return pdo::change_pdos(

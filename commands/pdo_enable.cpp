@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "command/setting_options.hpp"
 #include "pdo/pdo_changing.hpp"
 
@@ -23,7 +23,7 @@ Result<void> act(const Context& context, const pdo::PresentPdos& present, Action
   const bool linked = present.values.count({pdo.communication_index(), 1}) > 0;
   const auto name = canopen::name(pdo.direction, pdo.number);
   if (action == Action::enable && pdo.entries.empty())
-    return fail(Errc::usage, name + " carries nothing yet", fmt::format("`pdo map {} OBJECT…`", name));
+    return fail(Errc::usage, name + " carries nothing yet", formatted("`pdo map {} OBJECT…`", name));
   if (action == Action::clear) pdo.entries.clear();
   if (linked && action == Action::enable)
     if (const auto on = pdo::switch_on(pdo, present.node); !on) return on;

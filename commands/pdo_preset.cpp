@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
@@ -28,8 +28,8 @@ Result<const drive::PdoPreset*> preset_of(const Context& context, const Argument
   std::vector<std::string> names;
   for (const auto& preset : presets) names.push_back(preset.name);
   return fail(Errc::usage,
-              fmt::format("the manual of {} has no mapping for '{}'", context.profile->family, word),
-              names.empty() ? "it has none; `pdo map` makes one" : fmt::format("use {}", one_of(names)));
+              formatted("the manual of {} has no mapping for '{}'", context.profile->family, word),
+              names.empty() ? "it has none; `pdo map` makes one" : formatted("use {}", one_of(names)));
 }
 
 Result<void> check_pdo_preset(Context& context, const Arguments& arguments) {

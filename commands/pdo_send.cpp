@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/enabling_write.hpp"
@@ -28,16 +28,15 @@ constexpr Parameter kPdoSendParameters[] = {
 
 Result<void> check_usable(const show::PdoView& view) {
   if (view.pdo.direction == canopen::PdoDirection::transmit)
-    return fail(Errc::usage, fmt::format("{} is a TPDO", view.name), "only RPDOs can be sent");
+    return fail(Errc::usage, formatted("{} is a TPDO", view.name), "only RPDOs can be sent");
   if (!view.pdo.is_valid())
-    return fail(Errc::negative, fmt::format("node {}: {} is not in use", view.node, view.name),
+    return fail(Errc::negative, formatted("node {}: {} is not in use", view.node, view.name),
                 "bit 31 of its COB-ID is set; `pdo enable` clears it");
   if (view.pdo.entries.empty())
-    return fail(Errc::negative, fmt::format("node {}: {} maps nothing", view.node, view.name),
+    return fail(Errc::negative, formatted("node {}: {} maps nothing", view.node, view.name),
                 "`pdo map` maps objects into it");
   if (view.pdo.bits() > 64)
-    return fail(Errc::negative,
-                fmt::format("node {}: {} is too long for classical CAN", view.node, view.name),
+    return fail(Errc::negative, formatted("node {}: {} is too long for classical CAN", view.node, view.name),
                 "`pdo show` shows its length");
   return {};
 }
@@ -49,8 +48,8 @@ Result<void> check_count(const show::PdoView& view, std::size_t given) {
   std::string order;
   for (const auto& name : names) append(order, name);
   return fail(Errc::usage,
-              fmt::format("{} carries {} value{}, {} given", view.name, names.size(),
-                          names.size() == 1 ? "" : "s", given),
+              formatted("{} carries {} value{}, {} given", view.name, names.size(),
+                        names.size() == 1 ? "" : "s", given),
               "in this order: " + order);
 }
 
@@ -88,14 +87,13 @@ Result<void> check_operational(Context& context, const show::PdoView& view) {
   if (!state) return fail(state.error());
   if (!*state) {
     context.notices.push_back(
-        fmt::format("node {}: not known whether it is operational (no heartbeat{}); if not, it ignores PDOs",
-                    view.node, context.dry_run ? ", and a dry run does not guard it" : ""));
+        formatted("node {}: not known whether it is operational (no heartbeat{}); if not, it ignores PDOs",
+                  view.node, context.dry_run ? ", and a dry run does not guard it" : ""));
     return {};
   }
   if (**state == session::NodeState::operational) return {};
-  return fail(Errc::negative,
-              fmt::format("node {} is {}: it ignores PDOs", view.node, session::name(**state)),
-              fmt::format("`nmt start -n {}` makes it operational", view.node));
+  return fail(Errc::negative, formatted("node {} is {}: it ignores PDOs", view.node, session::name(**state)),
+              formatted("`nmt start -n {}` makes it operational", view.node));
 }
 
 report::Written written_values(const show::PdoView& view, const can::Frame& frame) {
@@ -124,7 +122,7 @@ Result<Value> run_pdo_send(Context& context, const Arguments& arguments) {
   if (const auto ready = check_operational(context, view); !ready) return fail(ready.error());
   if (context.dry_run) return Value(std::move(answer));
   if (const auto sure = context.confirm(
-          fmt::format("Send {} to node {}: {}? The motor may move.", view.name, view.node, message->text));
+          formatted("Send {} to node {}: {}? The motor may move.", view.name, view.node, message->text));
       !sure)
     return fail(sure.error());
   if (message->enables) {
@@ -133,7 +131,7 @@ Result<Value> run_pdo_send(Context& context, const Arguments& arguments) {
   }
   if (const auto sent = context.session->can()->send(message->frame); !sent) return fail(sent.error());
   if (view.pdo.type <= kLastSynchronous)
-    context.notices.push_back(fmt::format("{} takes effect at the next SYNC: `sync once`", view.name));
+    context.notices.push_back(formatted("{} takes effect at the next SYNC: `sync once`", view.name));
   return Value(std::move(answer));
 }
 

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "pdo/pdo_record.hpp"
@@ -67,13 +67,13 @@ std::vector<PdoDifference> differences(const Context& context, const NodePdos& n
   };
   std::vector<PdoDifference> out;
   if (other(1))
-    out.push_back({"cob_id", fmt::format("{} {}", show::can_id_text(factory, node.node),
-                                         factory.is_valid() ? "valid" : "not valid")});
-  if (other(2)) out.push_back({"type", fmt::format("type {}", factory.type)});
+    out.push_back({"cob_id", formatted("{} {}", show::can_id_text(factory, node.node),
+                                       factory.is_valid() ? "valid" : "not valid")});
+  if (other(2)) out.push_back({"type", formatted("type {}", factory.type)});
   if (other(3))
     out.push_back({"inhibit_ms", "inhibit time " + show::inhibit_text(factory.inhibit.value_or(0))});
-  if (other(5)) out.push_back({"event_ms", fmt::format("event timer {} ms", factory.event.value_or(0))});
-  if (other(6)) out.push_back({"sync_start", fmt::format("SYNC start {}", factory.sync_start.value_or(0))});
+  if (other(5)) out.push_back({"event_ms", formatted("event timer {} ms", factory.event.value_or(0))});
+  if (other(6)) out.push_back({"sync_start", formatted("SYNC start {}", factory.sync_start.value_or(0))});
   if (mapping_differs(node.values, node.factory, pdo))
     out.push_back({"entries", factory_mapping(context, factory)});
   return out;
@@ -85,7 +85,7 @@ std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const s
   if (!pdo.is_valid()) return out;
   const auto text = show::can_id_text(pdo.cob_id);
   if (const auto service = canopen::service_of(pdo.can_id()); !service.empty())
-    out.push_back(fmt::format("{} is reserved for {}", text, service));
+    out.push_back(formatted("{} is reserved for {}", text, service));
   const bool sent = pdo.direction == PdoDirection::transmit;
   for (const auto& node : all)
     for (const auto& other : node.pdos) {
@@ -94,11 +94,11 @@ std::vector<std::string> conflicts(const NodePdos& mine, const Pdo& pdo, const s
       if (same || !other.is_valid() || other.can_id() != pdo.can_id()) continue;
       const auto name = canopen::name(other.direction, other.number);
       if (sent && other.direction == PdoDirection::transmit)
-        out.push_back(fmt::format("{} of node {} is also sent with {}", name, node.node, text));
+        out.push_back(formatted("{} of node {} is also sent with {}", name, node.node, text));
       if (sent && other.direction == PdoDirection::receive)
-        out.push_back(fmt::format("{} of node {} receives it", name, node.node));
+        out.push_back(formatted("{} of node {} receives it", name, node.node));
       if (!sent && other.direction == PdoDirection::receive)
-        out.push_back(fmt::format("{} of node {} also receives {}", name, node.node, text));
+        out.push_back(formatted("{} of node {} also receives {}", name, node.node, text));
     }
   return out;
 }
@@ -148,7 +148,7 @@ Result<Value> run_pdo_show(Context& context, const Arguments&) {
     NodePdos node{context.nodes[i], *read[i], session::pdos_of(*read[i]), {}, {}};
     if (context.profile != nullptr) node.factory = session::default_pdo_values(*context.profile, node.node);
     if (node.pdos.empty())
-      context.notices.push_back(fmt::format("node {} has no PDO parameters that can be read", node.node));
+      context.notices.push_back(formatted("node {} has no PDO parameters that can be read", node.node));
     node.assigned = session::assigned_pdos(context.profile, node.values);
     all.push_back(std::move(node));
   }

@@ -1,9 +1,9 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "pdo/pdo_use.hpp"
@@ -49,7 +49,7 @@ Result<void> add_pdos(Context& context, const Arguments& arguments, std::uint8_t
     const auto view = pdo::find_view(*views, node, name);
     if (!view) return fail(view.error());
     if (!ring && !(*view)->pdo.is_valid())
-      return fail(Errc::negative, fmt::format("node {}: {} is not in use", node, (*view)->name),
+      return fail(Errc::negative, formatted("node {}: {} is not in use", node, (*view)->name),
                   "bit 31 of its COB-ID is set; `pdo enable` clears it");
     out.push_back({**view});
   }
@@ -86,9 +86,8 @@ class Mappings {
         if (entry.view.node == mapping.node) entry.view.fields.clear();
       traffic::tell_now(
           *context_,
-          fmt::format(
-              "node {} {}: its PDOs are shown without values until its PDO mapping has been read again",
-              mapping.node, why));
+          formatted("node {} {}: its PDOs are shown without values until its PDO mapping has been read again",
+                    mapping.node, why));
     }
   }
 
@@ -102,7 +101,7 @@ class Mappings {
       mapping.lifetime = lifetime;
       mapping.ended = false;
       for (auto& view : *views) take(std::move(view), watched);
-      traffic::tell_now(*context_, fmt::format("node {}: its PDO mapping was read again", mapping.node));
+      traffic::tell_now(*context_, formatted("node {}: its PDO mapping was read again", mapping.node));
     }
   }
 
@@ -154,7 +153,7 @@ void show(Context& context, show::SampleWriter& writer, const Watched& entry, By
     });
   }
   if (auto* live = writer.view()) return show::show_values(*live, view, data, context.chinese);
-  auto line = fmt::format("{:11.6f} {:3} {} ", seconds, view.node, view.name);
+  auto line = formatted("{:11.6f} {:3} {} ", seconds, view.node, view.name);
   show::append_values(view, data, context.chinese, line);
   writer.add_line(line);
 }
@@ -183,7 +182,7 @@ void tell_silence(Context& context, std::span<const Watched> watched, std::uint6
   const bool silent = std::all_of(watched.begin(), watched.end(),
                                   [](const Watched& entry) { return entry.rhythm.count() == 0; });
   if (silent && fd_frames > 0)
-    context.notices.push_back(fmt::format(
+    context.notices.push_back(formatted(
         "no PDO of classical CAN came; CAN FD frames that came and were not read: {}. Is a node set to CAN FD?",
         fd_frames));
   else if (silent)
@@ -207,7 +206,7 @@ void tell_ended(Context& context, std::span<const Watched> watched) {
   for (const auto node : nodes)
     if (context.session->ethercat()->image_of(node) == nullptr)
       context.errors.push_back(drive_error(Errc::negative, node, "its process data have ended",
-                                           fmt::format("`status -n {}` shows its state and why", node)));
+                                           formatted("`status -n {}` shows its state and why", node)));
 }
 
 /// Shows what comes until it is ended; of each PDO it keeps how often it came.
@@ -249,7 +248,7 @@ Result<Value> run_pdo_watch(Context& context, const Arguments& arguments) {
   if (!length) return fail(length.error());
   if (context.session->gateway() != nullptr)
     return fail(Errc::usage,
-                fmt::format("'pdo watch' needs CAN or EtherCAT, {} is neither", context.session->url()),
+                formatted("'pdo watch' needs CAN or EtherCAT, {} is neither", context.session->url()),
                 "`watch` reads objects there, again and again");
   Mappings mappings(context, !arguments.has("pdo"));
   auto watched = watched_pdos(context, arguments);

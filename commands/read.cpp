@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/transfer_option.hpp"
@@ -64,7 +64,7 @@ Result<std::vector<drive::Target>> fitting_targets(const Context& context, std::
   });
   if (out.empty())
     return fail(Errc::usage, "no object that can be read fits '" + pattern + "'",
-                fmt::format("`objects '{}'` lists what fits", pattern));
+                formatted("`objects '{}'` lists what fits", pattern));
   return out;
 }
 

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <functional>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
@@ -58,19 +58,17 @@ constexpr Counted kOthers{"other", "1 other frame", "{} other frames"};
 std::string counted(std::string_view service, std::size_t count) {
   const auto* found = std::ranges::find(kCounted, service, &Counted::service);
   const auto& words = found != std::end(kCounted) ? *found : kOthers;
-  return count == 1 ? std::string(words.one) : fmt::format(fmt::runtime(words.several), count);
+  return count == 1 ? std::string(words.one) : formatted(fmt::runtime(words.several), count);
 }
 
 std::string question_replay(const traffic::ReplayPlan& plan, std::string_view file, std::string_view bus) {
   std::string services;
   for (const auto& [service, count] : plan.services) append(services, counted(service, count));
-  auto out =
-      fmt::format("Send the {} frames of {} on {} again: {}?", plan.frames.size(), file, bus, services);
+  auto out = formatted("Send the {} frames of {} on {} again: {}?", plan.frames.size(), file, bus, services);
   if (!plan.moving.empty())
-    out +=
-        fmt::format(" {} of them can move a motor: {}.", plan.dangerous(), traffic::kinds_text(plan.moving));
+    out += formatted(" {} of them can move a motor: {}.", plan.dangerous(), traffic::kinds_text(plan.moving));
   if (!plan.lasting.empty())
-    out += fmt::format(" Some store, restart or re-address a drive: {}.", traffic::kinds_text(plan.lasting));
+    out += formatted(" Some store, restart or re-address a drive: {}.", traffic::kinds_text(plan.lasting));
   return out;
 }
 
@@ -78,7 +76,7 @@ Result<double> replay_speed(const Arguments& arguments) {
   if (!arguments.has("--speed")) return 1.0;
   const auto speed = parse_real(arguments.text("--speed"));
   if (!speed || *speed < 0.001 || *speed > 1000)
-    return fail(Errc::usage, fmt::format("'{}' is not a speed", arguments.text("--speed")),
+    return fail(Errc::usage, formatted("'{}' is not a speed", arguments.text("--speed")),
                 "write 0.001..1000; 1 is as recorded");
   return *speed;
 }
@@ -103,19 +101,19 @@ report::Table services_table(const traffic::ReplayPlan& plan) {
 std::string failure_text(const Context& context, const traffic::ReplayFailure& failure) {
   const auto object = drive::target_at(context.profile, failure.object).in_sentence();
   if (!failure.abort_code)
-    return fmt::format(fmt::runtime(failure.write ? "write of {} of node {} not answered"
-                                                  : "read of {} of node {} not answered"),
-                       object, failure.node);
-  return fmt::format(fmt::runtime(failure.write ? "write of {} of node {} refused: {} (abort 0x{:08X})"
-                                                : "read of {} of node {} refused: {} (abort 0x{:08X})"),
-                     object, failure.node, show::abort_words(context, *failure.abort_code),
-                     *failure.abort_code);
+    return formatted(fmt::runtime(failure.write ? "write of {} of node {} not answered"
+                                                : "read of {} of node {} not answered"),
+                     object, failure.node);
+  return formatted(fmt::runtime(failure.write ? "write of {} of node {} refused: {} (abort 0x{:08X})"
+                                              : "read of {} of node {} refused: {} (abort 0x{:08X})"),
+                   object, failure.node, show::abort_words(context, *failure.abort_code),
+                   *failure.abort_code);
 }
 
 /// What became of the SDO requests; exit code 1 where one was in vain.
 void tell_failures(Context& context, const traffic::ReplayRun& run) {
   if (run.answered_by_recording() > 0)
-    context.notices.push_back(fmt::format(
+    context.notices.push_back(formatted(
         "SDO requests answered only by the recording, not by a drive: {}; --master leaves such answers out",
         run.answered_by_recording()));
   const auto& failures = run.failures();
@@ -123,7 +121,7 @@ void tell_failures(Context& context, const traffic::ReplayRun& run) {
   auto message = failure_text(context, failures.front());
   if (failures.size() > 1)
     message =
-        fmt::format("{} SDO requests were refused or not answered; the first: {}", failures.size(), message);
+        formatted("{} SDO requests were refused or not answered; the first: {}", failures.size(), message);
   context.errors.push_back(
       show::located(make_error(Errc::negative, std::move(message),
                                "the drives are not in the recording's final state; see the table"),
@@ -146,7 +144,7 @@ report::Table failures_table(const Context& context, const std::vector<traffic::
     out.rows.push_back({failure.node, to_string(failure.object), failure.object.index, failure.object.sub,
                         report::text_or_null(context.chinese ? target.label_zh() : target.label()),
                         failure.write ? "write" : "read",
-                        abort ? Value(fmt::format("0x{:08X}", *abort)) : Value(),
+                        abort ? Value(formatted("0x{:08X}", *abort)) : Value(),
                         abort ? show::abort_words(context, *abort) : "none"});
   }
   return out;
@@ -160,7 +158,7 @@ void remember_energised(Context& context, const traffic::ReplayPlan& plan,
       context.session->energised().insert(node);
     else
       context.notices.push_back(
-          fmt::format("node {} does not answer: whether the replay energises it is not known", node));
+          formatted("node {} does not answer: whether the replay energises it is not known", node));
   }
 }
 
@@ -176,7 +174,7 @@ Result<void> send_recorded(Context& context, const traffic::ReplayPlan& plan,
     if (done.error().code != Errc::bus) motion::stop_left_energised(context);
     auto error = done.error();
     error.message =
-        fmt::format("{}; {} of {} frames were sent", error.message, replay.sent(), plan.frames.size());
+        formatted("{}; {} of {} frames were sent", error.message, replay.sent(), plan.frames.size());
     return fail(std::move(error));
   }
   answer.push_back({"sent", replay.sent()});
@@ -198,12 +196,12 @@ void tell_plan(Context& context, const traffic::ReplayPlan& plan, std::string_vi
     context.notices.push_back(
         plan.extended == 1
             ? "1 frame with a 29-bit identifier is left out: these are not replayed"
-            : fmt::format("{} frames with 29-bit identifiers are left out: these are not replayed",
-                          plan.extended));
+            : formatted("{} frames with 29-bit identifiers are left out: these are not replayed",
+                        plan.extended));
   std::string dropped;
-  for (const auto id : plan.dropped) append(dropped, fmt::format("0x{:03X}", id));
+  for (const auto id : plan.dropped) append(dropped, formatted("0x{:03X}", id));
   if (!dropped.empty())
-    context.notices.push_back(fmt::format(
+    context.notices.push_back(formatted(
         "left out, taken as TPDOs by CAN-ID only (not confirmed by a drive or family): {}", dropped));
 }
 
@@ -240,10 +238,10 @@ Result<Value> run_replay(Context& context, const Arguments& arguments) {
   }
   if (plan.seen == 0) return traffic::no_frames(file);
   if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())
-    return fail(Errc::usage, fmt::format("{} has no timestamps: its frames cannot be timed", file),
+    return fail(Errc::usage, formatted("{} has no timestamps: its frames cannot be timed", file),
                 "`candump -L` and `candump -ta` write them, `--trace FILE` too");
   if (plan.frames.empty())
-    return fail(Errc::negative, fmt::format("no frame of the {} in {} is sent", plan.seen, file),
+    return fail(Errc::negative, formatted("no frame of the {} in {} is sent", plan.seen, file),
                 "--only and --master leave them out");
   report::Record answer{{"frames", plan.frames.size()},
                         {"can_move", plan.dangerous(), report::Show::everywhere, "can move a motor"}};

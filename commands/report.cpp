@@ -1,9 +1,9 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/output_form.hpp"
@@ -47,7 +47,7 @@ Result<Form> form_of(const std::filesystem::path& file) {
   const auto extension = lower(file.extension().string());
   if (extension == ".html" || extension == ".htm") return Form::html;
   if (extension == ".json") return Form::json;
-  return fail(Errc::usage, fmt::format("'{}' is not a report file name", file.string()),
+  return fail(Errc::usage, formatted("'{}' is not a report file name", file.string()),
               "use .html for people or .json for programs");
 }
 
@@ -56,8 +56,7 @@ Result<std::filesystem::path> file_of(const Arguments& arguments) {
   const auto output = arguments.text("--output");
   const bool named = arguments.has("--output") && !is_output_form(output);
   if (named && arguments.has("file"))
-    return fail(Errc::usage,
-                fmt::format("'{}' and '{}': one file at a time", arguments.text("file"), output));
+    return fail(Errc::usage, formatted("'{}' and '{}': one file at a time", arguments.text("file"), output));
   if (!named && !arguments.has("file"))
     return fail(Errc::usage, "which file?", "`report FILE.html` for people, `report FILE.json` for programs");
   return std::filesystem::path(named ? output : arguments.text("file"));

@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
 #include "settings/restore_journal.hpp"
@@ -33,7 +33,7 @@ Result<void> keep_part(const Context& context, settings::Backup& backup, const s
   if (!*part) return {};
   std::erase_if(backup.entries, [&](const settings::Backup::Entry& entry) { return !(*part)(entry.object); });
   if (!backup.entries.empty()) return {};
-  return fail(Errc::usage, fmt::format("{} contains nothing of '{}'", file, only));
+  return fail(Errc::usage, formatted("{} contains nothing of '{}'", file, only));
 }
 
 Result<Value> run_restore(Context& context, const Arguments& arguments) {
@@ -49,7 +49,7 @@ Result<Value> run_restore(Context& context, const Arguments& arguments) {
       return fail(kept.error());
   if (!backup) return fail(backup.error());
   auto done =
-      settings::put_into(context, *backup, file, node, fmt::format("{}.before-node-{}.json", file, node),
+      settings::put_into(context, *backup, file, node, formatted("{}.before-node-{}.json", file, node),
                          {.choice = {.with_address = arguments.has("--with-address"),
                                      .force = arguments.has("--force"),
                                      .skip_invalid = arguments.has("--skip-invalid")},

@@ -1,6 +1,6 @@
 #include "session/scan.hpp"
+#include "base/format.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -77,7 +77,7 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
       nodes.push_back(node);
     else
       context.errors.push_back(drive_error(Errc::timeout, node, "there is no slave at this position",
-                                           fmt::format("slaves on the ring: {}", ring->count)));
+                                           formatted("slaves on the ring: {}", ring->count)));
   }
   for (auto& notice : show::ring_notices(*ring, nodes)) context.notices.push_back(std::move(notice));
   const auto conditions = conditions_of(*context.session, *ring, nodes);
@@ -95,9 +95,9 @@ Result<report::Value> scan_registers(Context& context) {
     const auto patience =
         std::min(context.session->options().timeout, context.session->modbus()->scan_patience());
     context.tell(
-        fmt::format("{} addresses are asked one after the other, which takes up to {:.0f} s; -n 1-10 asks "
-                    "these alone\n",
-                    nodes.size(), std::ceil(std::chrono::duration<double>(patience * nodes.size()).count())));
+        formatted("{} addresses are asked one after the other, which takes up to {:.0f} s; -n 1-10 asks "
+                  "these alone\n",
+                  nodes.size(), std::ceil(std::chrono::duration<double>(patience * nodes.size()).count())));
   }
   const auto found = session::scan(*context.session, nodes);
   if (!found) return fail(found.error());

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -6,6 +5,7 @@
 #include <vector>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
@@ -148,8 +148,8 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
   if (const auto right = context.hold_family(context.nodes, context.profile, true); !right)
     return fail(right.error());
   std::string nodes;
-  for (const auto node : context.nodes) append(nodes, fmt::format("{}", node));
-  if (const auto sure = context.confirm(fmt::format(
+  for (const auto node : context.nodes) append(nodes, formatted("{}", node));
+  if (const auto sure = context.confirm(formatted(
           "Map the objects into an unused TPDO of node {} while sampling, and restore it afterwards?",
           nodes));
       !sure)
@@ -159,9 +159,9 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
     const auto mapped = out.back()->begin(arguments.all("object"), period->value_or(kScopePeriod));
     if (mapped) continue;
     if (mapped.error().code == Errc::interrupted) return fail(mapped.error());
-    context.notices.push_back(
-        fmt::format("read by SDO, not mapped: {}{}", pdo::reason_naming(node, mapped.error()),
-                    mapped.error().hint.empty() ? "" : " (" + mapped.error().hint + ")"));
+    context.notices.push_back(formatted("read by SDO, not mapped: {}{}",
+                                        pdo::reason_naming(node, mapped.error()),
+                                        mapped.error().hint.empty() ? "" : " (" + mapped.error().hint + ")"));
   }
   return out;
 }

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "session/open_port.hpp"
 #include "session/open_register_line.hpp"
@@ -21,7 +21,7 @@ void tell_simulated(const Context& context, std::string_view url, report::List n
   const auto count = nodes.size();
   context.front_end->wait_for_no_reader();
   context.emit({{"bus", std::string(url)}, {"nodes", std::move(nodes)}},
-               fmt::format("{} drive{} on {}; Ctrl-C ends it", count, count == 1 ? "" : "s", url));
+               formatted("{} drive{} on {}; Ctrl-C ends it", count, count == 1 ? "" : "s", url));
 }
 
 Result<void> run_on_can(Context& context, std::string_view drives) {

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "motion/power_down.hpp"
 #include "session/ring_state.hpp"
@@ -28,7 +29,7 @@ constexpr Parameter kStateParameters[] = {
 };
 
 std::string list(std::span<const std::uint8_t> nodes) {
-  return fmt::format("node{} {}", nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", "));
+  return formatted("node{} {}", nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", "));
 }
 
 /// What is still driven by another master is asked for, and what has power among it loses it in good order.
@@ -36,7 +37,7 @@ Result<void> take_over(Context& context, session::EtherCatNetwork& ring) {
   const auto foreign = session::foreign_nodes(ring, context.nodes);
   if (!foreign) return fail(foreign.error());
   if (foreign->empty()) return {};
-  const auto question = fmt::format(
+  const auto question = formatted(
       "Take {} over from another master? If that master still runs, both write to it; an energised motor is de-energised and coasts.",
       list(*foreign));
   if (const auto answer = context.confirm(question); !answer) return fail(answer.error());

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "canopen/emergency.hpp"
 #include "command/command.hpp"
@@ -106,7 +106,7 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
     const auto value = static_cast<std::int8_t>(*mode);
     const auto text = mode_text(context, value);
     out.push_back(
-        {"mode", text.empty() ? fmt::format("{}", value) : fmt::format("{} {}", value, text), Show::text});
+        {"mode", text.empty() ? formatted("{}", value) : formatted("{} {}", value, text), Show::text});
     out.push_back({"mode", Record{{"value", value}, {"label", report::text_or_null(text)}}, Show::json});
   } else {
     out.push_back({"mode", Value(), Show::json});
@@ -116,7 +116,7 @@ void add_mode_and_fault(Record& out, const Context& context, std::span<const Res
   out.push_back({"fault", fault.record(), Show::json});
   if (const auto bits = session::number_in(answers[3])) {
     const auto text = canopen::error_register_text(static_cast<std::uint8_t>(*bits));
-    out.push_back({"error_register", fmt::format("0x{:02X} {}", *bits, text), Show::text, "error register"});
+    out.push_back({"error_register", formatted("0x{:02X} {}", *bits, text), Show::text, "error register"});
     out.push_back({"error_register", *bits, Show::json});
   } else {
     out.push_back({"error_register", Value(), Show::json});
@@ -141,8 +141,8 @@ void add_nmt_state(Record& out, const Context& context, std::uint8_t node,
 void add_cycles(Record& out, const ethercat::ProcessImage& image, std::uint8_t node) {
   const auto& counts = image.counts(node);
   out.push_back({"process_data",
-                 fmt::format("{} cycles; frames lost: {}, outputs not taken: {}, inputs not given: {}",
-                             counts.cycles, counts.lost, counts.short_outputs, counts.short_inputs),
+                 formatted("{} cycles; frames lost: {}, outputs not taken: {}, inputs not given: {}",
+                           counts.cycles, counts.lost, counts.short_outputs, counts.short_inputs),
                  Show::text, "process data"});
   out.push_back({"process_data",
                  Record{{"cycles", counts.cycles},
@@ -188,7 +188,7 @@ Record status_record(Context& context, std::uint8_t node, std::span<const Result
   add_owed(context, node, restarted, out);
   const auto others = motion::other_axes(*context.session, context.profile, node);
   if (others.empty()) return out;
-  context.notices.push_back(fmt::format("node {}: {}", node, motion::axes_text(others)));
+  context.notices.push_back(formatted("node {}: {}", node, motion::axes_text(others)));
   out.push_back({"other_axes", axis_records(others), Show::json});
   return out;
 }
@@ -198,7 +198,7 @@ Value mode_cell(const Context& context, const Result<Bytes>& answer) {
   if (!number) return {};
   const auto mode = static_cast<std::int8_t>(*number);
   const auto name = drive::mode_word(context.profile, mode, context.chinese);
-  return name.empty() ? fmt::format("{}", mode) : fmt::format("{} {}", mode, name);
+  return name.empty() ? formatted("{}", mode) : formatted("{} {}", mode, name);
 }
 
 /// `pre-operational`, `SAFE-OP`; nothing where it was not heard.
@@ -249,7 +249,7 @@ Result<report::Value> run_status(Context& context, const Arguments& arguments) {
     const bool refused = !mine[0] && mine[0].error().code == Errc::sdo_abort;
     if (refused)
       context.notices.push_back(
-          fmt::format("node {} has no statusword: it is not a CiA 402 drive", context.nodes[i]));
+          formatted("node {} has no statusword: it is not a CiA 402 drive", context.nodes[i]));
     if (!mine[0] && !refused) {
       context.errors.push_back(mine[0].error());
       continue;

@@ -1,6 +1,6 @@
+#include "base/format.hpp"
 #include "session/storage.hpp"
 
-#include <fmt/format.h>
 #include <array>
 
 #include "command/command.hpp"
@@ -27,7 +27,7 @@ Result<ParameterGroup> group_of(const Arguments& arguments) {
   const auto word = arguments.has("group") ? arguments.text("group") : kGroups.front();
   for (std::size_t i = 0; i < kGroups.size(); ++i)
     if (kGroups[i] == word) return static_cast<ParameterGroup>(i + 1);
-  return fail(Errc::usage, fmt::format("'{}' is not a group of parameters", word),
+  return fail(Errc::usage, formatted("'{}' is not a group of parameters", word),
               "use all, communication, application or vendor");
 }
 
@@ -62,9 +62,9 @@ Result<Value> carry_out(Context& context, const Arguments& arguments, const Meth
     for (const auto node : context.nodes)
       if (const auto still = settings::refuse_energised(*context.session, node, "its settings"); !still)
         return fail(still.error());
-  const auto whom = context.nodes.size() == 1 ? fmt::format("node {}", context.nodes.front())
-                                              : fmt::format("{} nodes", context.nodes.size());
-  if (const auto answer = context.confirm(fmt::format(fmt::runtime(words.question), whom)); !answer)
+  const auto whom = context.nodes.size() == 1 ? formatted("node {}", context.nodes.front())
+                                              : formatted("{} nodes", context.nodes.size());
+  if (const auto answer = context.confirm(formatted(fmt::runtime(words.question), whom)); !answer)
     return fail(answer.error());
   report::Table table;
   table.columns = {{"node"}, {"result"}, {"error", "", Show::json}};

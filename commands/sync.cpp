@@ -1,6 +1,5 @@
 #include "canopen/sync.hpp"
-
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 #include "base/duration.hpp"
 #include "base/number.hpp"
@@ -44,7 +43,7 @@ Result<void> check_none(const Context& context) {
   const auto* production = context.session->can()->sync();
   if (production == nullptr) return {};
   return fail(Errc::refused,
-              fmt::format("SYNC is already being produced, every {}", to_string(production->options.period)),
+              formatted("SYNC is already being produced, every {}", to_string(production->options.period)),
               "`sync stop` ends it");
 }
 
@@ -64,7 +63,7 @@ Result<void> check_quiet(session::Session& session) {
 Result<Value> run_once(Context& context, const Arguments&) {
   if (const auto free = check_none(context); !free) return fail(free.error());
   if (context.dry_run) return planned_frame({});
-  if (const auto sure = context.confirm(fmt::format("Send a SYNC? {}", kWarning)); !sure)
+  if (const auto sure = context.confirm(formatted("Send a SYNC? {}", kWarning)); !sure)
     return fail(sure.error());
   if (const auto sent = context.session->can()->send(canopen::sync_frame()); !sent) return fail(sent.error());
   return Value(report::Record{{"sent", 1}});
@@ -76,12 +75,12 @@ Result<canopen::SyncProducer::Options> sync_options(const Arguments& arguments) 
   if (!period) return fail(period.error());
   out.period = period->value_or(kSyncPeriod);
   if (out.period < kShortestPeriod)
-    return fail(Errc::usage, fmt::format("a period of {} is too short", to_string(out.period)),
+    return fail(Errc::usage, formatted("a period of {} is too short", to_string(out.period)),
                 "the minimum is 200us; drives need 1ms or more");
   if (!arguments.has("--counter")) return out;
   const auto counter = parse_digits(arguments.text("--counter"), 10);
   if (!counter || *counter < 2 || *counter > 240)
-    return fail(Errc::usage, fmt::format("'{}' is not a counter overflow value", arguments.text("--counter")),
+    return fail(Errc::usage, formatted("'{}' is not a counter overflow value", arguments.text("--counter")),
                 "write 2..240 (CiA 301, 1019h)");
   out.last_counter = static_cast<std::uint8_t>(*counter);
   return out;
@@ -98,7 +97,7 @@ Result<Value> run_start(Context& context, const Arguments& arguments) {
     return planned_frame(options->last_counter == 0 ? std::nullopt : std::optional<std::uint8_t>(1));
   }
   if (const auto sure =
-          context.confirm(fmt::format("Send a SYNC every {}? {}", to_string(options->period), kWarning));
+          context.confirm(formatted("Send a SYNC every {}? {}", to_string(options->period), kWarning));
       !sure)
     return fail(sure.error());
   auto& session = *context.session;

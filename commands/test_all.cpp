@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
 #include "command/trial_options.hpp"
@@ -79,7 +79,7 @@ class AllTests {
   bool may_go_on(std::string_view name) {
     if (results_.empty() || passed(results_.back())) return true;
     context_->notices.push_back(
-        fmt::format("node {}: nothing was moved, because `{}` failed", request_->node, name));
+        formatted("node {}: nothing was moved, because `{}` failed", request_->node, name));
     return false;
   }
 
@@ -136,7 +136,7 @@ class AllTests {
 Result<void> check_left_out(const Arguments& arguments) {
   for (const auto* option : {"--repeat", "--spread"})
     if (arguments.has("--no-home") && arguments.has(option))
-      return fail(Errc::usage, fmt::format("{} is for `test home`, which --no-home skips", option),
+      return fail(Errc::usage, formatted("{} is for `test home`, which --no-home skips", option),
                   "leave one of them out");
   return {};
 }

@@ -1,9 +1,9 @@
-#include <fmt/format.h>
 #include <cmath>
 #include <initializer_list>
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
@@ -48,10 +48,9 @@ Result<double> learning_speed(const Arguments& arguments) {
   if (unit != std::string::npos && unit + 3 == text.size()) text = text.substr(0, unit);
   const auto rpm = parse_real(text);
   if (rpm && std::abs(*rpm) >= motion::kLeastLearnRpm && std::abs(*rpm) <= motion::kMostLearnRpm) return *rpm;
-  return fail(
-      Errc::usage,
-      fmt::format("--speed: '{}' is not 15rpm to 30rpm in either direction", arguments.text("--speed")),
-      "slower is too inaccurate, faster is not safe before the counts are known");
+  return fail(Errc::usage,
+              formatted("--speed: '{}' is not 15rpm to 30rpm in either direction", arguments.text("--speed")),
+              "slower is too inaccurate, faster is not safe before the counts are known");
 }
 
 Result<std::optional<double>> nameplate_of(const Arguments& arguments) {
@@ -60,7 +59,7 @@ Result<std::optional<double>> nameplate_of(const Arguments& arguments) {
   if (counts && !counts->negative && counts->magnitude > 0)
     return std::optional(static_cast<double>(counts->magnitude));
   return fail(Errc::usage,
-              fmt::format("--nameplate: '{}' is not a number of counts", arguments.text("--nameplate")),
+              formatted("--nameplate: '{}' is not a number of counts", arguments.text("--nameplate")),
               "such as 131072 for 17 bits");
 }
 
@@ -85,8 +84,8 @@ std::string unmet(Context& context, std::uint8_t node) {
       const auto target = drive::target_at(context.profile, condition.object);
       const auto name = target.parameter != nullptr ? target.parameter->id : to_string(condition.object);
       out += (out.empty() ? "" : ", ") +
-             (present ? fmt::format("{} is {}, not {}", name, load_le(*present), condition.value)
-                      : fmt::format("{} cannot be read", name));
+             (present ? formatted("{} is {}, not {}", name, load_le(*present), condition.value)
+                      : formatted("{} cannot be read", name));
     }
   }
   return out;
@@ -104,11 +103,10 @@ Result<double> read_gear(Context& context, std::uint8_t node) {
   if (known && known->learned && known->value > 0) return known->value;
   if (known) {
     const auto pending = motion::restart_note(*context.profile, *known->way);
-    return refused(
-        node,
-        fmt::format("its parameters already give {} increments per revolution{}: nothing to learn",
-                    plain_number(known->value, 12), pending.empty() ? "" : " once they take effect"),
-        "`units show` lists which" + (pending.empty() ? "" : "; " + pending));
+    return refused(node,
+                   formatted("its parameters already give {} increments per revolution{}: nothing to learn",
+                             plain_number(known->value, 12), pending.empty() ? "" : " once they take effect"),
+                   "`units show` lists which" + (pending.empty() ? "" : "; " + pending));
   }
   const auto why = unmet(context, node);
   return refused(node, "its present settings prevent the measurement" + (why.empty() ? why : ": " + why),
@@ -121,9 +119,9 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
     const auto ways = rules.units.find(drive::Measure::increments_per_turn);
     const auto told = ways == rules.units.end() ? std::string() : show::ways_text(ways->second);
     return fail(Errc::refused,
-                told.empty() ? fmt::format("{} has no speed monitor to measure with", context.profile->family)
-                             : fmt::format("{} reports the counts per revolution itself: {}",
-                                           context.profile->family, told),
+                told.empty() ? formatted("{} has no speed monitor to measure with", context.profile->family)
+                             : formatted("{} reports the counts per revolution itself: {}",
+                                         context.profile->family, told),
                 told.empty() ? std::string(motion::kOtherWay) : "`units show` reads them");
   }
   const auto monitor = drive::resolve(context.profile, rules.learn.speed);
@@ -174,7 +172,7 @@ Result<void> keep(Context& context, std::uint8_t node, const motion::LearnReport
   auto written = motion::TurnFile(context, node).write(turn);
   if (written) return written;
   auto error = written.error();
-  error.message = fmt::format("the measured {} counts are not kept: {}", turn.counts, error.message);
+  error.message = formatted("the measured {} counts are not kept: {}", turn.counts, error.message);
   return fail(std::move(error));
 }
 

@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
@@ -50,8 +50,8 @@ Value kept_record(const motion::KnownTurn& known) {
 }
 
 std::string kept_text(const motion::KnownTurn& known) {
-  return fmt::format("kept: {} counts ({}), measured at {}", known.kept->counts, known.kept->reason,
-                     known.kept->time);
+  return formatted("kept: {} counts ({}), measured at {}", known.kept->counts, known.kept->reason,
+                   known.kept->time);
 }
 
 std::string_view position_unit(const drive::Profile& profile) {
@@ -69,7 +69,7 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
   std::string_view source;
   std::string from = "not known";
   if (const auto unit = position_unit(*context.profile); of_turn && unit != "inc") {
-    from = fmt::format("not needed: positions are in {}{}", unit, turn ? "; --turn changes nothing" : "");
+    from = formatted("not needed: positions are in {}{}", unit, turn ? "; --turn changes nothing" : "");
   } else if (of_turn && turn) {
     value = turn;
     source = "--turn";
@@ -110,7 +110,7 @@ Result<Value> run_units_show(Context& context, const Arguments& arguments) {
     const auto known = motion::find_turn(context, node);
     if (!known.unused.empty())
       context.notices.push_back(
-          fmt::format("node {}: the kept counts per revolution are not used: {}", node, known.unused));
+          formatted("node {}: the kept counts per revolution are not used: {}", node, known.unused));
     for (const auto& [measure, name] : kMeasures)
       if (measure == Measure::increments_per_turn || context.profile->rules.units.count(measure) > 0)
         table.rows.push_back(row(context, node, measure, name, options->turn, known));

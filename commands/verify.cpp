@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "command/setting_options.hpp"
 #include "settings/comparison.hpp"
@@ -27,7 +27,7 @@ Result<Value> run_verify(Context& context, const Arguments& arguments) {
     if (!read) return fail(read.error());
     if (read->family != context.profile->family)
       return fail(Errc::refused,
-                  fmt::format("{} is for {}, not for {}", name, read->family, context.profile->family),
+                  formatted("{} is for {}, not for {}", name, read->family, context.profile->family),
                   "give the backup's family with -d if the drive really is one");
     backup = std::move(*read);
   }
@@ -43,7 +43,7 @@ Result<Value> run_verify(Context& context, const Arguments& arguments) {
       context.errors.push_back(read.error());
       continue;
     }
-    settings::Side actual{fmt::format("node {}", node), node, {}};
+    settings::Side actual{formatted("node {}", node), node, {}};
     for (const auto& entry : *read)
       if (entry.bytes) actual.values.emplace(entry.object, *entry.bytes);
     auto comparison = settings::compare(context.profile, expected, actual, true, context.chinese);

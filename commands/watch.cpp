@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <memory>
 
+#include "base/format.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "session/identify.hpp"
@@ -87,8 +87,8 @@ class WatchingValues {
   void show(const std::vector<traffic::Sample>& samples) {
     for (const auto& sample : samples) {
       const auto& channel = sampler_->channels()[sample.channel];
-      const auto node = fmt::format("{}", channel.node);
-      const auto row = fmt::format("{}", sample.channel);
+      const auto node = formatted("{}", channel.node);
+      const auto row = formatted("{}", sample.channel);
       if (!sample.bytes) {
         view_->set(row, {node, channel.name, "-"});
         continue;
@@ -100,8 +100,8 @@ class WatchingValues {
 
   void show(std::uint8_t node, double seconds, const std::vector<traffic::Sample>& samples) {
     report::List values;
-    std::string line = fmt::format("{:10.3f}", seconds);
-    if (context_->nodes.size() > 1) line += fmt::format(" {:3}", node);
+    std::string line = formatted("{:10.3f}", seconds);
+    if (context_->nodes.size() > 1) line += formatted(" {:3}", node);
     bool changed = !changes_;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const auto& channel = sampler_->channels()[i];

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "motion/watchdog_report.hpp"
@@ -26,11 +27,11 @@ std::string joined_or(const std::vector<std::string>& words, std::string_view no
 std::string reaction_text(const WatchdogReport& one) {
   std::string out;
   if (one.option)
-    out = fmt::format("{} (6007h = {})", one.reaction.empty() ? "not known" : one.reaction, *one.option);
+    out = formatted("{} (6007h = {})", one.reaction.empty() ? "not known" : one.reaction, *one.option);
   if (!one.fault.empty() && !one.noticed_by.empty() && one.option != 0)
-    append(out, fmt::format("fault 8130h, {}", one.fault), "; ");
+    append(out, formatted("fault 8130h, {}", one.fault), "; ");
   if (!one.nmt_state.empty()) append(out, "NMT state " + one.nmt_state, "; ");
-  if (!one.alarms.empty()) append(out, fmt::format("alarm {}", fmt::join(one.alarms, ", ")), "; ");
+  if (!one.alarms.empty()) append(out, formatted("alarm {}", fmt::join(one.alarms, ", ")), "; ");
   return out.empty() ? std::string("not known") : out;
 }
 

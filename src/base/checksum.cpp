@@ -1,10 +1,10 @@
 #include "base/checksum.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl {
 
-std::string Checksum::text() const { return fmt::format("fnv1a64:{:016x}", hash_); }
+std::string Checksum::text() const { return formatted("fnv1a64:{:016x}", hash_); }
 
 std::string checksum_of(std::string_view text) {
   Checksum sum;

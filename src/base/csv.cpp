@@ -1,9 +1,9 @@
 #include "base/csv.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 
 namespace servoctl {
@@ -117,13 +117,13 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
       std::sort(sorted.begin(), sorted.end());
       const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
       if (twice != sorted.end())
-        return fail(file_error(file, line, fmt::format("column '{}' appears twice", *twice)));
+        return fail(file_error(file, line, formatted("column '{}' appears twice", *twice)));
       continue;
     }
     if (cells.size() != table.columns.size())
       return fail(file_error(
           file, line,
-          fmt::format("{} cells, but the header names {} columns", cells.size(), table.columns.size())));
+          formatted("{} cells, but the header names {} columns", cells.size(), table.columns.size())));
     table.rows.push_back({std::move(cells), line});
     cells.reserve(table.columns.size());
   }
@@ -138,7 +138,7 @@ std::string csv_cell(std::string_view text) {
 }
 
 std::string csv_heading(std::string_view name, std::string_view unit) {
-  return csv_cell(unit.empty() ? std::string(name) : fmt::format("{} ({})", name, unit));
+  return csv_cell(unit.empty() ? std::string(name) : formatted("{} ({})", name, unit));
 }
 
 }  // namespace servoctl

@@ -1,11 +1,11 @@
 #include "base/duration.hpp"
 
-#include <fmt/format.h>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -37,10 +37,9 @@ Result<Duration> read_duration(std::string_view text) {
   if (const auto time = parse_duration(text)) return *time;
   text = trim(text);
   if (parse_real(text) || parse_integer(text))
-    return fail(Errc::usage, fmt::format("'{}': a time needs its unit", text),
-                fmt::format("write {0}s or {0}ms", text));
-  return fail(Errc::usage, fmt::format("'{}' is not a time", text),
-              "write 500ms, 2s or 1min; at most one day");
+    return fail(Errc::usage, formatted("'{}': a time needs its unit", text),
+                formatted("write {0}s or {0}ms", text));
+  return fail(Errc::usage, formatted("'{}' is not a time", text), "write 500ms, 2s or 1min; at most one day");
 }
 
 std::string to_string(Duration duration) {

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
@@ -17,6 +16,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 #include "base/number.hpp"
 #include "base/regular_files.hpp"
@@ -54,7 +54,7 @@ std::string advice(int error) {
 }
 
 tl::unexpected<Error> cannot_write(const fs::path& path, int error) {
-  return fail(Errc::file, fmt::format("cannot write {}: {}", path.string(), why(error)), advice(error));
+  return fail(Errc::file, formatted("cannot write {}: {}", path.string(), why(error)), advice(error));
 }
 
 /// Where a file is written to.
@@ -69,7 +69,7 @@ struct Target {
 /// The descriptor of this process that a path such as `/proc/self/fd/1` names.
 std::optional<int> own_descriptor(const fs::path& path) {
   const auto folder = path.parent_path().string();
-  if (folder != "/proc/self/fd" && folder != "/dev/fd" && folder != fmt::format("/proc/{}/fd", ::getpid()))
+  if (folder != "/proc/self/fd" && folder != "/dev/fd" && folder != formatted("/proc/{}/fd", ::getpid()))
     return std::nullopt;
   const auto number = parse_digits(path.filename().string(), 10);
   return number && *number <= INT_MAX ? std::optional(static_cast<int>(*number)) : std::nullopt;
@@ -97,13 +97,12 @@ Result<Target> target_of(const fs::path& path) {
   if (::stat(out.path.c_str(), &info) != 0) {
     if (errno != ENOENT) return cannot_write(path, errno);
     if (!out.path.has_filename())
-      return fail(Errc::file, fmt::format("cannot write {}: it is a folder", path.string()),
+      return fail(Errc::file, formatted("cannot write {}: it is a folder", path.string()),
                   "name a file in it");
     return out;
   }
   if (S_ISDIR(info.st_mode))
-    return fail(Errc::file, fmt::format("cannot write {}: it is a folder", path.string()),
-                "name a file in it");
+    return fail(Errc::file, formatted("cannot write {}: it is a folder", path.string()), "name a file in it");
   if (S_ISREG(info.st_mode))
     out.before = info;
   else
@@ -121,7 +120,7 @@ class Temporary {
     const auto begin = std::chrono::steady_clock::now().time_since_epoch().count();
     constexpr int kMostTries = 100;
     for (int i = 0; i < kMostTries && fd_ < 0; ++i) {
-      path_ = folder() / fmt::format(".servoctl-{}-{:x}", ::getpid(), begin + i);
+      path_ = folder() / formatted(".servoctl-{}-{:x}", ::getpid(), begin + i);
       fd_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC,
                    target.before ? 0600 : 0666);
       if (fd_ < 0 && errno != EEXIST) break;
@@ -244,12 +243,12 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t 
   const auto is_regular = [&](int error) { return error != 0 || S_ISREG(found.st_mode); };
   // Before it is opened, and behind that: another may stand there now.
   if (regular_only && !is_regular(::stat(path.c_str(), &found)))
-    return fail(Errc::file, fmt::format("{} is no regular file", path.string()));
+    return fail(Errc::file, formatted("{} is no regular file", path.string()));
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular_only ? O_NONBLOCK | O_NOCTTY : 0));
   const FilePtr file(fd < 0 ? nullptr : ::fdopen(fd, "rb"));
-  if (!file) return fail(Errc::file, fmt::format("cannot open {}: {}", path.string(), why(errno)));
+  if (!file) return fail(Errc::file, formatted("cannot open {}: {}", path.string(), why(errno)));
   if (regular_only && !is_regular(::fstat(fd, &found)))
-    return fail(Errc::file, fmt::format("{} is no regular file", path.string()));
+    return fail(Errc::file, formatted("{} is no regular file", path.string()));
   if (regular_only) max_bytes = std::min(max_bytes, kMostUnasked);
   std::string content;
   char chunk[65536];
@@ -257,11 +256,11 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t 
     const std::size_t got = std::fread(chunk, 1, sizeof chunk, file.get());
     content.append(chunk, got);
     if (content.size() > max_bytes)
-      return fail(Errc::file, fmt::format("{} is larger than {} bytes", path.string(), max_bytes));
+      return fail(Errc::file, formatted("{} is larger than {} bytes", path.string(), max_bytes));
     if (got < sizeof chunk) break;
   }
   if (std::ferror(file.get()) != 0)
-    return fail(Errc::file, fmt::format("cannot read {}: {}", path.string(), why(errno)));
+    return fail(Errc::file, formatted("cannot read {}: {}", path.string(), why(errno)));
   return content;
 }
 
@@ -285,7 +284,7 @@ Result<void> write_file_atomically(const std::filesystem::path& path, std::strin
   const auto target = target_of(path);
   if (!target) return fail(target.error());
   if (target->kind != Target::Kind::regular && RegularFilesOnly::hold())
-    return fail(Errc::file, fmt::format("{} is no regular file", path.string()));
+    return fail(Errc::file, formatted("{} is no regular file", path.string()));
   if (target->kind != Target::Kind::regular) return write_through(path, *target, content);
   Temporary file(*target);
   file.fill(content);

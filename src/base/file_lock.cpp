@@ -1,7 +1,6 @@
 #include "base/file_lock.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,6 +8,7 @@
 #include <system_error>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 
 namespace servoctl {
 namespace {
@@ -34,7 +34,7 @@ Result<std::optional<FileLock>> FileLock::take(const std::filesystem::path& path
     if (fd < 0 && (errno == EACCES || errno == EROFS)) return std::optional(FileLock({}, -1));
     if (fd < 0)
       return fail(Errc::file,
-                  fmt::format("cannot open {}: {}", path.string(), std::generic_category().message(errno)),
+                  formatted("cannot open {}: {}", path.string(), std::generic_category().message(errno)),
                   "choose an existing folder you may write to");
     if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
@@ -42,7 +42,7 @@ Result<std::optional<FileLock>> FileLock::take(const std::filesystem::path& path
       if (error == EINTR) continue;
       if (error == EWOULDBLOCK) return std::optional<FileLock>();
       return fail(Errc::file,
-                  fmt::format("cannot lock {}: {}", path.string(), std::generic_category().message(error)));
+                  formatted("cannot lock {}: {}", path.string(), std::generic_category().message(error)));
     }
     if (is_there(path, fd)) {
       say_holder(fd, holder);

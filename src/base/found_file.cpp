@@ -6,7 +6,6 @@
 #include <sys/xattr.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 
 namespace servoctl {
@@ -34,7 +34,7 @@ std::optional<uid_t> sudo_user() {
 
 std::string user_name(uid_t user) {
   const auto* entry = ::getpwuid(user);
-  return entry == nullptr ? fmt::format("the user {}", user) : fmt::format("the user {}", entry->pw_name);
+  return entry == nullptr ? formatted("the user {}", user) : formatted("the user {}", entry->pw_name);
 }
 
 /// User private groups: Debian gives each user a group of the same name, and a umask of 002 may go with it.
@@ -61,21 +61,21 @@ std::string writers(const fs::path& path, const struct stat& info) {
   if (has_access_list(path)) return "users of its access control list";
   if (is_private_group(info.st_uid, info.st_gid)) return {};
   const auto* group = ::getgrgid(info.st_gid);
-  return group == nullptr ? fmt::format("the group {}", info.st_gid)
-                          : fmt::format("the group {}", group->gr_name);
+  return group == nullptr ? formatted("the group {}", info.st_gid)
+                          : formatted("the group {}", group->gr_name);
 }
 
 tl::unexpected<Error> foreign(const fs::path& path, uid_t owner, std::string_view way) {
-  return fail(Errc::refused, fmt::format("{} belongs to {}, not to you", path.string(), user_name(owner)),
+  return fail(Errc::refused, formatted("{} belongs to {}, not to you", path.string(), user_name(owner)),
               std::string(way));
 }
 
 tl::unexpected<Error> writable(const fs::path& path, const std::string& by, std::string_view way) {
-  return fail(Errc::refused, fmt::format("{} can be changed by {}", path.string(), by), std::string(way));
+  return fail(Errc::refused, formatted("{} can be changed by {}", path.string(), by), std::string(way));
 }
 
 tl::unexpected<Error> unknown(const fs::path& path) {
-  return fail(Errc::file, fmt::format("{}: {}", path.string(), std::generic_category().message(errno)));
+  return fail(Errc::file, formatted("{}: {}", path.string(), std::generic_category().message(errno)));
 }
 
 fs::path folder_of(const fs::path& file) {
@@ -125,8 +125,8 @@ Result<void> check_links(const fs::path& path) {
     const bool own = info.st_uid == ::geteuid() || info.st_uid == ::getuid() || info.st_uid == kRoot;
     if (!own && info.st_uid != caller)
       return fail(Errc::refused,
-                  fmt::format("cannot write {}: {} is a link of {}", path.string(), at.string(),
-                              user_name(info.st_uid)),
+                  formatted("cannot write {}: {} is a link of {}", path.string(), at.string(),
+                            user_name(info.st_uid)),
                   "name the file that is to be written");
     std::error_code error;
     const auto next = fs::read_symlink(at, error);

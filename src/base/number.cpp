@@ -1,12 +1,12 @@
 #include "base/number.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
 
 #include "base/decade.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl {
@@ -79,7 +79,7 @@ constexpr double kGreatest = 1e15;
 constexpr double kLeast = 1e-9;
 
 std::string with_decimals(double value, int decimals) {
-  auto out = fmt::format("{:.{}f}", value, std::max(decimals, 0));
+  auto out = formatted("{:.{}f}", value, std::max(decimals, 0));
   if (out.find('.') != std::string::npos) {
     while (out.back() == '0') out.pop_back();
     if (out.back() == '.') out.pop_back();
@@ -98,7 +98,7 @@ bool has_plain_form(double value) {
 
 std::string plain_number(double value, int digits) {
   if (value == 0) return "0";
-  if (!has_plain_form(value)) return fmt::format("{:.{}g}", value, digits);
+  if (!has_plain_form(value)) return formatted("{:.{}g}", value, digits);
   return with_decimals(value, digits - magnitude_of(value));
 }
 
@@ -107,7 +107,7 @@ std::string number_text(double value) {
   constexpr int kDigits = 4;
   constexpr int kMostDigits = 7;
   if (value == 0) return "0";
-  if (!has_plain_form(value)) return fmt::format("{:.{}g}", value, kDigits);
+  if (!has_plain_form(value)) return formatted("{:.{}g}", value, kDigits);
   const int magnitude = magnitude_of(value);
   return with_decimals(value,
                        magnitude > 0 ? std::min(kDecimals, kMostDigits - magnitude) : kDigits - magnitude);

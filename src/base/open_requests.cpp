@@ -1,10 +1,11 @@
 #include "base/open_requests.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
 #include <iterator>
 #include <utility>
+
+#include "base/format.hpp"
 
 namespace servoctl {
 namespace {
@@ -132,9 +133,9 @@ void OpenRequests::forget_own() {
 
 std::string lateness_text(Duration late) {
   if (late < std::chrono::milliseconds(100))
-    return fmt::format("; it answered an earlier request after {} ms", late / std::chrono::milliseconds(1));
-  return fmt::format("; it answered an earlier request after {:.1f} s",
-                     static_cast<double>(late.count()) / 1e6);
+    return formatted("; it answered an earlier request after {} ms", late / std::chrono::milliseconds(1));
+  return formatted("; it answered an earlier request after {:.1f} s",
+                   static_cast<double>(late.count()) / 1e6);
 }
 
 std::string lateness_hint(Duration late) {
@@ -142,9 +143,9 @@ std::string lateness_hint(Duration late) {
   constexpr Duration kSecond = std::chrono::seconds(1);
   const auto step = 2 * late < kSecond ? kStep : kSecond;
   const auto enough = (2 * late / step + 1) * step;
-  return fmt::format("the drive answers later than it is waited for: use --timeout {}{}",
-                     step == kSecond ? enough / kSecond : enough / std::chrono::milliseconds(1),
-                     step == kSecond ? "s" : "ms");
+  return formatted("the drive answers later than it is waited for: use --timeout {}{}",
+                   step == kSecond ? enough / kSecond : enough / std::chrono::milliseconds(1),
+                   step == kSecond ? "s" : "ms");
 }
 
 }  // namespace servoctl

@@ -1,6 +1,6 @@
 #include "base/result.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl {
 
@@ -45,7 +45,7 @@ Error make_error(Errc code, std::string message, std::string hint) {
 }
 
 Error drive_error(Errc code, std::uint8_t node, std::string_view what, std::string hint) {
-  auto error = make_error(code, fmt::format("node {}: {}", node, what), std::move(hint));
+  auto error = make_error(code, formatted("node {}: {}", node, what), std::move(hint));
   error.node = node;
   return error;
 }
@@ -53,20 +53,20 @@ Error drive_error(Errc code, std::uint8_t node, std::string_view what, std::stri
 Error drive_error(Errc code, std::uint8_t node, ObjectAddress object, std::string_view what,
                   std::string hint) {
   auto error =
-      make_error(code, fmt::format("node {}, object {}: {}", node, to_string(object), what), std::move(hint));
+      make_error(code, formatted("node {}, object {}: {}", node, to_string(object), what), std::move(hint));
   error.node = node;
   error.object = object;
   return error;
 }
 
 Error file_error(std::string_view file, std::uint32_t line, std::string_view what, std::string hint) {
-  auto error = make_error(Errc::file, fmt::format("{}:{}: {}", file, line, what), std::move(hint));
+  auto error = make_error(Errc::file, formatted("{}:{}: {}", file, line, what), std::move(hint));
   error.line = line;
   return error;
 }
 
 Error file_error(std::string_view file, std::uint32_t line, std::uint32_t column, std::string_view what) {
-  auto error = make_error(Errc::file, fmt::format("{}:{}:{}: {}", file, line, column, what));
+  auto error = make_error(Errc::file, formatted("{}:{}:{}: {}", file, line, column, what));
   error.line = line;
   return error;
 }

@@ -1,10 +1,10 @@
 #include "base/text.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/utf8.hpp"
 
 namespace servoctl {
@@ -231,9 +231,9 @@ std::string did_you_mean(std::string_view text, std::span<const std::string> can
   const auto best = nearest(text, candidates);
   switch (best.size()) {
     case 0: return {};
-    case 1: return fmt::format("did you mean {}?", best[0]);
-    case 2: return fmt::format("did you mean {} or {}?", best[0], best[1]);
-    default: return fmt::format("did you mean {}, {} or {}?", best[0], best[1], best[2]);
+    case 1: return formatted("did you mean {}?", best[0]);
+    case 2: return formatted("did you mean {} or {}?", best[0], best[1]);
+    default: return formatted("did you mean {}, {} or {}?", best[0], best[1], best[2]);
   }
 }
 

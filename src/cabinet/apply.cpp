@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_run.hpp"
 #include "cabinet/displaced.hpp"
@@ -78,8 +79,8 @@ class Applying {
       auto why = run.look->plan ? hindrance(run) : std::optional(run.look->plan.error());
       if (!why) continue;
       auto error = of_axis(*run.look->axis, std::move(*why));
-      error.hint = fmt::format("--all-or-nothing: nothing was written{}{}", error.hint.empty() ? "" : "; ",
-                               error.hint);
+      error.hint =
+          formatted("--all-or-nothing: nothing was written{}{}", error.hint.empty() ? "" : "; ", error.hint);
       return fail(std::move(error));
     }
     return {};
@@ -95,7 +96,7 @@ class Applying {
                            "`disable` de-energises it; make sure that the load is held");
       if (need.kind == AxisNeed::Kind::password && !options_->unlock && has_password(*run.station.profile))
         return drive_error(Errc::refused, node,
-                           fmt::format("its password locks {}", fmt::join(need.names, ", ")),
+                           formatted("its password locks {}", fmt::join(need.names, ", ")),
                            "add --unlock, which gives it and takes it back after");
     }
     return std::nullopt;
@@ -110,8 +111,8 @@ class Applying {
       values += run.look->plan->different;
       ++axes;
     }
-    return desk_->confirm(fmt::format("Write {} value{} to {} ax{}?", values, values == 1 ? "" : "s", axes,
-                                      axes == 1 ? "is" : "es"));
+    return desk_->confirm(formatted("Write {} value{} to {} ax{}?", values, values == 1 ? "" : "s", axes,
+                                    axes == 1 ? "is" : "es"));
   }
 
   /// Those that have something to do, with the numbers of their runs.
@@ -229,7 +230,7 @@ class Applying {
     if (pauses)
       if (const auto entered = pause.enter(); !entered) return fail(entered.error());
     auto done = settings::put_into(desk, *backup, file.string(), axis.node,
-                                   fmt::format("{}.before-{}.json", file.string(), axis.name), how,
+                                   formatted("{}.before-{}.json", file.string(), axis.name), how,
                                    settings::journal_of(file));
     if (const auto left = pause.leave(true); !left) desk.errors.push_back(left.error());
     desk.notices.insert(desk.notices.end(), pause.notices().begin(), pause.notices().end());
@@ -259,10 +260,10 @@ class Applying {
     if (names.empty()) return;
     const auto all = names.size();
     names.resize(std::min(all, kMostNamed));
-    desk_->notices.push_back(fmt::format(
-        "axis {}: whether a {} keeps {}{} is not stated: `cabinet plan` after a power cycle tells",
-        run.look->axis->name, run.look->axis->family, fmt::join(names, ", "),
-        all > kMostNamed ? fmt::format(" and {} more", all - kMostNamed) : std::string()));
+    desk_->notices.push_back(
+        formatted("axis {}: whether a {} keeps {}{} is not stated: `cabinet plan` after a power cycle tells",
+                  run.look->axis->name, run.look->axis->family, fmt::join(names, ", "),
+                  all > kMostNamed ? formatted(" and {} more", all - kMostNamed) : std::string()));
   }
 
   Value answer() const { return desk_->dry_run ? frames() : apply_table(runs_, options_->keep); }
@@ -271,7 +272,7 @@ class Applying {
     Record out;
     for (const auto& run : runs_) {
       const auto& axis = *run.look->axis;
-      const auto title = fmt::format("{}, node {}, {}", axis.name, axis.node, axis.family);
+      const auto title = formatted("{}, node {}, {}", axis.name, axis.node, axis.family);
       out.push_back({axis.name, run.frames.is_null() ? Value(text_of(run.end)) : run.frames,
                      report::Show::everywhere, title});
     }

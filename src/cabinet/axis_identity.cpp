@@ -1,7 +1,6 @@
 #include "cabinet/axis_identity.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
@@ -24,11 +23,11 @@ Result<void> hold_family(show::Desk& desk, const Axis& axis, std::span<const dri
   const auto verdict = session::judge_family(*identity, *desk.profile, families);
   if (verdict.kind == FamilyVerdict::Kind::contradicted)
     return other_drive(axis, verdict.object.value_or(objects::kDeviceType),
-                       fmt::format("not a {}: {}", desk.profile->family, verdict.why),
+                       formatted("not a {}: {}", desk.profile->family, verdict.why),
                        "is another drive at this node, or is `family` wrong? `scan` shows who is there");
   if (verdict.kind == FamilyVerdict::Kind::unproven)
-    desk.notices.push_back(fmt::format("node {}: nothing proves that it is a {}: {}", axis.node,
-                                       desk.profile->family, verdict.why));
+    desk.notices.push_back(formatted("node {}: nothing proves that it is a {}: {}", axis.node,
+                                     desk.profile->family, verdict.why));
   session::be_wary_of_family(*desk.session, axis.node, *desk.profile);
   if (const auto heard = desk.session->listen(); !heard) return heard;
   return session::refuse_duplicate(*desk.session, axis.node);
@@ -57,7 +56,7 @@ Result<void> wait_for_second(show::Desk& desk, const Axis& axis) {
 }
 
 std::string serial_text(std::uint32_t serial) {
-  return serial == 0 ? std::string("none") : fmt::format("{0} (0x{0:08X})", serial);
+  return serial == 0 ? std::string("none") : formatted("{0} (0x{0:08X})", serial);
 }
 
 Result<void> hold_serial(const Axis& axis, const session::Identity& identity) {
@@ -65,11 +64,11 @@ Result<void> hold_serial(const Axis& axis, const session::Identity& identity) {
   if (identity.serial.value_or(0) == 0)
     return other_drive(
         axis, objects::kSerialNumber,
-        fmt::format("the drive tells no serial number, and the file says {}", serial_text(*axis.serial)),
+        formatted("the drive tells no serial number, and the file says {}", serial_text(*axis.serial)),
         "remove `serial` where its drives tell none; was the drive replaced? `info` shows what it is");
   return other_drive(axis, objects::kSerialNumber,
-                     fmt::format("the drive has the serial number {}, and the file says {}",
-                                 serial_text(*identity.serial), serial_text(*axis.serial)),
+                     formatted("the drive has the serial number {}, and the file says {}",
+                               serial_text(*identity.serial), serial_text(*axis.serial)),
                      "was the drive replaced, or swapped with another? `info` shows what it is");
 }
 

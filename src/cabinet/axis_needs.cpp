@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "drive/cia402.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/quantity.hpp"
@@ -43,7 +44,7 @@ std::string_view name(AxisNeed::Kind kind) {
 }
 
 std::string to_string(const AxisNeed& need) {
-  const auto names = need.names.empty() ? std::string() : fmt::format(" ({})", fmt::join(need.names, ", "));
+  const auto names = need.names.empty() ? std::string() : formatted(" ({})", fmt::join(need.names, ", "));
   switch (need.kind) {
     case AxisNeed::Kind::restart: return "a restart" + names;
     case AxisNeed::Kind::standstill: return "standstill" + names;
@@ -55,7 +56,7 @@ std::string to_string(const AxisNeed& need) {
 }
 
 std::string sentence(const AxisNeed& need) {
-  const auto names = need.names.empty() ? std::string() : fmt::format(" ({})", fmt::join(need.names, ", "));
+  const auto names = need.names.empty() ? std::string() : formatted(" ({})", fmt::join(need.names, ", "));
   switch (need.kind) {
     case AxisNeed::Kind::restart: return "needs a restart" + names;
     case AxisNeed::Kind::standstill: return "needs standstill" + names;

@@ -1,10 +1,10 @@
 #include "cabinet/axis_part.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/node_list.hpp"
@@ -118,7 +118,7 @@ std::optional<std::string> value_text(const toml::node& node) {
   if (get(node, text)) return text;
   if (get_int(node, whole)) return std::to_string(whole);
   if (const auto number = node.value_exact<double>(); number && std::isfinite(*number))
-    return fmt::format("{}", *number);
+    return formatted("{}", *number);
   return std::nullopt;
 }
 
@@ -132,12 +132,12 @@ Result<void> read_parameters(const toml::node& node, std::string_view file, std:
   for (const auto& [key, value] : *table) {
     auto text = value_text(value);
     if (!text)
-      return reader.fail_at(value, fmt::format("the value of '{}' is no number and no text", key.str()));
+      return reader.fail_at(value, formatted("the value of '{}' is no number and no text", key.str()));
     const Place at{key.source().begin.line, key.source().begin.column};
     const auto id = drive::canonical_id(key.str());
     const auto same = [&id](const Setting& other) { return drive::canonical_id(other.name) == id; };
     if (const auto twice = std::find_if(out.begin(), out.end(), same); twice != out.end())
-      return reader.fail_at(value, fmt::format("'{}' and '{}' are the same", twice->name, key.str()));
+      return reader.fail_at(value, formatted("'{}' and '{}' are the same", twice->name, key.str()));
     out.push_back({std::string(key.str()), std::move(*text), at});
   }
   std::stable_sort(out.begin(), out.end(), [](const Setting& a, const Setting& b) {

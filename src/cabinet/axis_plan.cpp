@@ -1,9 +1,9 @@
 #include "cabinet/axis_plan.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/pdo_index.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_values.hpp"
@@ -175,7 +175,7 @@ class AxisPlanner {
     const auto state = session::ask_state(*desk_->session, axis_->node);
     if (!state) return fail(state.error());
     if (*state != session::NodeState::operational) return false;
-    desk_->notices.push_back(fmt::format(
+    desk_->notices.push_back(formatted(
         "node {} is in OP: its PDOs are those of the process data, and not held against the factory's",
         axis_->node));
     return true;
@@ -225,11 +225,11 @@ class AxisPlanner {
     const auto said = drive::bitrate_text(*rate);
     desk_->notices.push_back(
         runs
-            ? fmt::format(
+            ? formatted(
                   "axis {}: {} is {}, the file says {}, and bus {} runs at {}: no bitrate is written; correct "
                   "the file, or the bus (`bus status`)",
                   axis_->name, profile.rules.nmt.bitrate, stored, said, bus->name, drive::bitrate_text(*runs))
-            : fmt::format(
+            : formatted(
                   "axis {}: {} is {}, the file says {}, and nothing tells at which bitrate bus {} runs: none is "
                   "written; where it is that of the file, `address --bitrate {} -n {}` sets it",
                   axis_->name, profile.rules.nmt.bitrate, stored, said, bus->name, bus->bitrate,
@@ -241,7 +241,7 @@ class AxisPlanner {
     for (const auto rate : drive::bitrates_of(profile))
       if (drive::bitrate_code(profile, rate).value_or(-1) == static_cast<std::int64_t>(code))
         return drive::bitrate_text(rate);
-    return fmt::format("{}, which is no bitrate", code);
+    return formatted("{}, which is no bitrate", code);
   }
 
   show::Desk* desk_;

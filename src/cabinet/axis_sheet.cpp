@@ -1,7 +1,6 @@
 #include "cabinet/axis_sheet.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/pdo_index.hpp"
 #include "cabinet/axis_plan.hpp"
@@ -64,7 +63,7 @@ report::Table values_of(const drive::Profile& profile, std::uint8_t node, const 
 }  // namespace
 
 std::string load_text(const Axis& axis) {
-  return axis.load ? fmt::format("{} {}/rev", plain_number(axis.load->per_rev, 6), axis.load->unit)
+  return axis.load ? formatted("{} {}/rev", plain_number(axis.load->per_rev, 6), axis.load->unit)
                    : std::string();
 }
 
@@ -73,7 +72,7 @@ Value pdos_text(const Axis& axis) {
   if (!pdos.preset.empty()) return pdos.preset;
   if (!pdos.file.empty()) return pdos.file.filename().string();
   const auto count = pdos.recipes.size();
-  return count == 0 ? Value() : Value(count == 1 ? std::string("1 PDO") : fmt::format("{} PDOs", count));
+  return count == 0 ? Value() : Value(count == 1 ? std::string("1 PDO") : formatted("{} PDOs", count));
 }
 
 Result<Value> axis_sheet(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,

@@ -1,8 +1,8 @@
 #include "cabinet/axis_values.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/bitrate.hpp"
 #include "drive/quantity.hpp"
@@ -47,7 +47,7 @@ Result<std::vector<PdoRecipe>> recipes_of(const drive::Profile& profile, const C
   return at_place(
       cabinet, axis, axis.pdos.at,
       make_error(Errc::usage,
-                 fmt::format("the manual of {} has no mapping for '{}'", profile.family, axis.pdos.preset),
+                 formatted("the manual of {} has no mapping for '{}'", profile.family, axis.pdos.preset),
                  names.empty() ? "it has none: write them as tables" : "use " + one_of(names)));
 }
 
@@ -123,8 +123,8 @@ class Wanted {
       meaning.type_known = false;
     if (!meaning.type_known || (meaning.measure && drive::needs_bridge(meaning, text))) {
       desk_->notices.push_back(
-          fmt::format("axis {}: {} = {} is not compared: only its drive tells what that is", axis_->name,
-                      setting.name, setting.value));
+          formatted("axis {}: {} = {} is not compared: only its drive tells what that is", axis_->name,
+                    setting.name, setting.value));
       return {};
     }
     const auto value = drive::parse_quantity(meaning, text);
@@ -158,11 +158,11 @@ class Wanted {
     const auto& profile = *desk_->profile;
     if (profile.dictionary.find(objects::kProducerHeartbeat) == nullptr)
       return at_place(*cabinet_, *axis_, axis_->heartbeat_at,
-                      make_error(Errc::file, fmt::format("{} has no heartbeat (1017h)", profile.family),
+                      make_error(Errc::file, formatted("{} has no heartbeat (1017h)", profile.family),
                                  "leave `heartbeat` out"));
     const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat);
-    return add_parameter({to_string(objects::kProducerHeartbeat), fmt::format("{}", milliseconds.count()),
-                          axis_->heartbeat_at});
+    return add_parameter(
+        {to_string(objects::kProducerHeartbeat), formatted("{}", milliseconds.count()), axis_->heartbeat_at});
   }
 
   Result<void> add_all(session::Values values, Place place) {
@@ -179,13 +179,13 @@ class Wanted {
       return at_place(*cabinet_, *axis_, place, make_error(Errc::file, std::move(why), std::move(hint)));
     };
     if (settings::is_address(desk_->profile, object))
-      return refuse(fmt::format("{} is node-ID or bitrate of the drive", name),
+      return refuse(formatted("{} is node-ID or bitrate of the drive", name),
                     "`node` and `bitrate` say them; they are not written as parameters");
     const auto first = std::find_if(out_.entries.begin(), out_.entries.end(),
                                     [&](const auto& entry) { return entry.object == object; });
     if (first != out_.entries.end()) {
       if (*first->bytes == data) return {};
-      return refuse(fmt::format("{} has another value in line {}", name, first->line), "remove one of them");
+      return refuse(formatted("{} has another value in line {}", name, first->line), "remove one of them");
     }
     add_entry(object, data, place);
     return {};

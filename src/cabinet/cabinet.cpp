@@ -1,9 +1,9 @@
 #include "cabinet/cabinet.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::cabinet {
@@ -53,7 +53,7 @@ Result<std::vector<const Axis*>> Cabinet::select(std::string_view list) const {
     if (!all && !knows(word)) {
       const auto all_names = names();
       const auto nearest = did_you_mean(word, all_names);
-      return fail(Errc::usage, fmt::format("{} has no axis '{}'", file.filename().string(), word),
+      return fail(Errc::usage, formatted("{} has no axis '{}'", file.filename().string(), word),
                   nearest.empty() ? "its axes: " + one_of(all_names) : nearest);
     }
     for (const auto& one : axes)
@@ -63,7 +63,7 @@ Result<std::vector<const Axis*>> Cabinet::select(std::string_view list) const {
   for (const auto& one : axes)
     if (chosen.count(&one) != 0) out.push_back(&one);
   if (out.empty())
-    return fail(Errc::usage, fmt::format("'{}' names no axis", list), "its axes: " + one_of(names()));
+    return fail(Errc::usage, formatted("'{}' names no axis", list), "its axes: " + one_of(names()));
   return out;
 }
 
@@ -80,7 +80,7 @@ std::filesystem::path find_cabinet(const std::filesystem::path& folder) {
 Error cabinet_error(const Cabinet& cabinet, const Axis& axis, Place at, std::string_view what,
                     std::string hint) {
   auto error =
-      file_error(cabinet.file.string(), at.line, at.column, fmt::format("axis {}: {}", axis.name, what));
+      file_error(cabinet.file.string(), at.line, at.column, formatted("axis {}: {}", axis.name, what));
   error.hint = std::move(hint);
   return error;
 }

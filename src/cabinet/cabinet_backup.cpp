@@ -1,12 +1,12 @@
 #include "cabinet/cabinet_backup.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 #include <algorithm>
 #include <system_error>
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/cabinet_plan.hpp"
 #include "report/told.hpp"
@@ -57,7 +57,7 @@ fs::path free_name(const fs::path& parent) {
   std::replace(time.begin(), time.end(), ':', '-');
   std::error_code ignored;
   auto out = parent / ("backup-" + time);
-  for (int i = 2; fs::exists(out, ignored); ++i) out = parent / fmt::format("backup-{}-{}", time, i);
+  for (int i = 2; fs::exists(out, ignored); ++i) out = parent / formatted("backup-{}-{}", time, i);
   return out;
 }
 
@@ -74,13 +74,13 @@ class FolderInTheMaking {
   Result<void> make() const {
     std::error_code error;
     fs::create_directories(path_, error);
-    if (error) return fail(Errc::file, fmt::format("{}: {}", path_.string(), error.message()));
+    if (error) return fail(Errc::file, formatted("{}: {}", path_.string(), error.message()));
     return {};
   }
   Result<void> name(const fs::path& name) {
     std::error_code error;
     fs::rename(path_, name, error);
-    if (error) return fail(Errc::file, fmt::format("{}: {}", name.string(), error.message()));
+    if (error) return fail(Errc::file, formatted("{}: {}", name.string(), error.message()));
     path_.clear();
     return {};
   }
@@ -135,9 +135,9 @@ Result<Value> back_up_cabinet(show::Desk& desk, const Cabinet& cabinet, std::spa
     return fail(std::move(first));
   }
   const auto parent = cabinet.file.parent_path();
-  FolderInTheMaking making(parent / fmt::format(".backup-{}.partial", ::getpid()));
+  FolderInTheMaking making(parent / formatted(".backup-{}.partial", ::getpid()));
   if (const auto made = making.make(); !made) return fail(made.error());
-  const auto written = write_all(parent / fmt::format(".backup-{}.partial", ::getpid()), cabinet, axes);
+  const auto written = write_all(parent / formatted(".backup-{}.partial", ::getpid()), cabinet, axes);
   if (!written) return fail(written.error());
   const auto folder = free_name(parent);
   if (const auto named = making.name(folder); !named) return fail(named.error());

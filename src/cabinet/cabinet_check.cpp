@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_values.hpp"
 #include "drive/drive_settings.hpp"
@@ -47,20 +48,20 @@ class AxisCheck {
     if (target->entry == nullptr && !profile_->is_generic())
       notices_.push_back(
           cabinet_error(*cabinet_, *axis_, setting.at,
-                        fmt::format("{} is not in the data of {}: its size and limits are asked of the drive",
-                                    setting.name, profile_->family))
+                        formatted("{} is not in the data of {}: its size and limits are asked of the drive",
+                                  setting.name, profile_->family))
               .message);
     const auto twice = places_.emplace(target->address, &setting);
     if (!twice.second)
-      return add(setting.at, make_error(Errc::file, fmt::format("{} is {} as well, in line {}", setting.name,
-                                                                twice.first->second->name,
-                                                                twice.first->second->at.line)));
+      return add(setting.at,
+                 make_error(Errc::file, formatted("{} is {} as well, in line {}", setting.name,
+                                                  twice.first->second->name, twice.first->second->at.line)));
     if (settings::is_address(profile_, target->address))
       return add(setting.at,
-                 make_error(Errc::file, fmt::format("{} is node-ID or bitrate of the drive", setting.name),
+                 make_error(Errc::file, formatted("{} is node-ID or bitrate of the drive", setting.name),
                             "`node` and `bitrate` say them; they are not written as parameters"));
     if (const auto reason = no_setting(*target); !reason.empty())
-      return add(setting.at, make_error(Errc::file, fmt::format("{} is no setting: {}", setting.name, reason),
+      return add(setting.at, make_error(Errc::file, formatted("{} is no setting: {}", setting.name, reason),
                                         "`param explain` tells more"));
     if (const auto fits =
             settings::check_change(desk_, axis_->node, *target, in_units_of_motor(*axis_, setting.value), {});
@@ -79,7 +80,7 @@ class AxisCheck {
 
   static Error with_name(const Setting& setting, Error error) {
     if (error.message.find(setting.name) == std::string::npos)
-      error.message = fmt::format("{}: {}", setting.name, error.message);
+      error.message = formatted("{}: {}", setting.name, error.message);
     return error;
   }
 
@@ -88,13 +89,13 @@ class AxisCheck {
     const auto target = drive::target_at(profile_, kHeartbeatTime);
     if (target.entry == nullptr)
       return add(axis_->heartbeat_at,
-                 make_error(Errc::file, fmt::format("{} has no heartbeat (1017h)", profile_->family)));
+                 make_error(Errc::file, formatted("{} has no heartbeat (1017h)", profile_->family)));
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat).count();
     if (const auto fits = settings::check_change(desk_, axis_->node, target, std::to_string(ms), {}); !fits)
       add(axis_->heartbeat_at, fits.error());
     if (const auto twice = places_.find(kHeartbeatTime); twice != places_.end())
-      add(twice->second->at, make_error(Errc::file, fmt::format("'heartbeat' in line {} says 1017h as well",
-                                                                axis_->heartbeat_at.line)));
+      add(twice->second->at, make_error(Errc::file, formatted("'heartbeat' in line {} says 1017h as well",
+                                                              axis_->heartbeat_at.line)));
   }
 
   void check_pdos() {
@@ -105,8 +106,8 @@ class AxisCheck {
       if (std::none_of(names.begin(), names.end(),
                        [&](const auto& name) { return equals_nocase(name, pdos.preset); }))
         add(pdos.at,
-            make_error(Errc::file, fmt::format("{} has no PDO preset '{}'", profile_->family, pdos.preset),
-                       names.empty() ? "it has none" : fmt::format("it has {}", one_of(names))));
+            make_error(Errc::file, formatted("{} has no PDO preset '{}'", profile_->family, pdos.preset),
+                       names.empty() ? "it has none" : formatted("it has {}", one_of(names))));
     }
     if (pdos.file.empty()) return check_recipes(pdos.recipes);
     const auto file = pdo::read_pdo_source(*profile_, cabinet_->file.parent_path() / pdos.file);
@@ -125,7 +126,7 @@ class AxisCheck {
       for (const auto& word : recipe.map.value_or(std::vector<std::string>()))
         if (const auto entry = pdo::parse_mapped(*profile_, word); !entry) {
           auto error = entry.error();
-          error.message = fmt::format("{}: {}", recipe.pdo, error.message);
+          error.message = formatted("{}: {}", recipe.pdo, error.message);
           add(at, error);
         }
     }
@@ -134,12 +135,12 @@ class AxisCheck {
   Result<void> check_pdo_name(const std::string& name) const {
     const auto pdo = canopen::parse_pdo_name(name);
     if (!pdo)
-      return fail(Errc::file, fmt::format("'{}' is not a PDO", name), "RPDO1, TPDO2: as the drive sees them");
+      return fail(Errc::file, formatted("'{}' is not a PDO", name), "RPDO1, TPDO2: as the drive sees them");
     const ObjectAddress mapping{pdo->mapping_index(), 0};
     if (profile_->is_generic() || drive::target_at(profile_, mapping).entry != nullptr) return {};
     return fail(
-        Errc::file, fmt::format("{} has no {}", profile_->family, canopen::name(pdo->direction, pdo->number)),
-        fmt::format("`objects '0x{:02X}*' -d {}` lists what it has", mapping.index >> 8U, profile_->family));
+        Errc::file, formatted("{} has no {}", profile_->family, canopen::name(pdo->direction, pdo->number)),
+        formatted("`objects '0x{:02X}*' -d {}` lists what it has", mapping.index >> 8U, profile_->family));
   }
 
   void check_limits() {
@@ -161,11 +162,11 @@ class AxisCheck {
           return drive::conversion(number->unit, unit).has_value();
         });
     if (fits) return check_range(name, text, *number);
-    auto known = std::string(fmt::format("{}", fmt::join(units, ", ")));
+    auto known = std::string(formatted("{}", fmt::join(units, ", ")));
     if (!axis_->load && name != "torque") known += "; `per_turn` makes other units known";
     if (axis_->load && name != "torque") known += ", " + axis_->load->unit + (name == "speed" ? "/s" : "");
-    add(axis_->limits.at, make_error(Errc::file, fmt::format("limits: {} = \"{}\" is no limit", name, text),
-                                     fmt::format("a number above 0 in {}", known)));
+    add(axis_->limits.at, make_error(Errc::file, formatted("limits: {} = \"{}\" is no limit", name, text),
+                                     formatted("a number above 0 in {}", known)));
   }
 
   /// A torque that is in the unit of the drive's own limit is held against the range of that.
@@ -176,7 +177,7 @@ class AxisCheck {
     const auto fits = settings::check_change(desk_, axis_->node, target, text, {});
     if (fits) return;
     add(axis_->limits.at,
-        make_error(Errc::file, fmt::format("limits: torque = \"{}\": {}", text, fits.error().message),
+        make_error(Errc::file, formatted("limits: torque = \"{}\": {}", text, fits.error().message),
                    fits.error().hint));
   }
 
@@ -198,7 +199,7 @@ class AxisCheck {
 class ToldOnce {
  public:
   bool is_new(const Axis& axis, std::string text) {
-    const auto name = fmt::format("axis {}: ", axis.name);
+    const auto name = formatted("axis {}: ", axis.name);
     if (const auto at = text.find(name); at != std::string::npos) text.erase(at, name.size());
     return told_.insert(std::move(text)).second;
   }
@@ -228,7 +229,7 @@ class AlikeNames {
     if (first == name || !told_.insert(name).second) return;
     auto error =
         file_error(cabinet_->file.string(), at.line, at.column,
-                   fmt::format("{} {} differs from {} in the case of letters alone", what, name, first));
+                   formatted("{} {} differs from {} in the case of letters alone", what, name, first));
     error.hint = "a slip at the keyboard would move the other: give one of them another name";
     errors_.push_back(std::move(error));
   }

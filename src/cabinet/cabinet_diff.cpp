@@ -1,9 +1,9 @@
 #include "cabinet/cabinet_diff.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 
+#include "base/format.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_values.hpp"
 #include "cabinet/cabinet_side.hpp"
@@ -37,12 +37,12 @@ class CabinetDifference {
     for (const auto& axis : axes)
       if (const auto done = compare_axis(axis); !done) return fail(done.error());
     if (different_ > 0)
-      tell(fmt::format("{} of {} values differ between {} and {}", different_, compared_, a_->title,
-                       b_->title));
+      tell(
+          formatted("{} of {} values differ between {} and {}", different_, compared_, a_->title, b_->title));
     if (in_one_ > 0)
-      tell(fmt::format("{} in one of {} and {} only",
-                       in_one_ == 1 ? "1 axis stands" : fmt::format("{} axes stand", in_one_), a_->title,
-                       b_->title));
+      tell(formatted("{} in one of {} and {} only",
+                     in_one_ == 1 ? "1 axis stands" : formatted("{} axes stand", in_one_), a_->title,
+                     b_->title));
     return Value(
         Record{{"compared", compared_},
                {"different", different_},
@@ -134,9 +134,9 @@ class CabinetDifference {
       return {};
     }
     if (a.identity.serial && b.identity.serial && a.identity.serial != b.identity.serial)
-      desk_->notices.push_back(fmt::format("axis {}: another drive: serial number {} in {}, {} in {}", name,
-                                           serial_text(*a.identity.serial), a_->title,
-                                           serial_text(*b.identity.serial), b_->title));
+      desk_->notices.push_back(formatted("axis {}: another drive: serial number {} in {}, {} in {}", name,
+                                         serial_text(*a.identity.serial), a_->title,
+                                         serial_text(*b.identity.serial), b_->title));
     const auto profile = (*load_)(a.family);
     if (!profile) return fail(profile.error());
     compare_sides(name, **profile, settings::side_of(a, a_->title), settings::side_of(b, b_->title));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "session/identify.hpp"
 #include "settings/interrupted_restore.hpp"
@@ -58,9 +59,9 @@ Result<AxisPlan> plan_rest(show::Desk& desk, const Cabinet& cabinet, const Axis&
 
 Error interrupted(const Axis& axis, const std::filesystem::path& before) {
   return drive_error(Errc::refused, axis.node, "an apply was interrupted",
-                     fmt::format("`cabinet apply --resume` continues it; `restore {} -n {}` restores the old "
-                                 "values",
-                                 before.string(), axis.name));
+                     formatted("`cabinet apply --resume` continues it; `restore {} -n {}` restores the old "
+                               "values",
+                               before.string(), axis.name));
 }
 
 /// Looks for a journal first: what an axis holds in the middle of a change is no basis for another.
@@ -113,7 +114,7 @@ void check_buses(const show::Desk& desk, std::span<const Station> stations, std:
 }
 
 std::string title_of(const Axis& axis) {
-  return fmt::format("{}, node {}, {}", axis.name, axis.node, axis.family);
+  return formatted("{}, node {}, {}", axis.name, axis.node, axis.family);
 }
 
 Value needs_value(const AxisPlan& plan) {
@@ -158,8 +159,8 @@ void add_text(const PlannedAxis& look, Record& out) {
   if (look.plan->different == 0) {
     out.push_back({look.axis->name,
                    look.plan->owed.empty() ? "nothing to do"
-                                           : fmt::format("nothing to write; needs a restart ({})",
-                                                         fmt::join(look.plan->owed, ", ")),
+                                           : formatted("nothing to write; needs a restart ({})",
+                                                       fmt::join(look.plan->owed, ", ")),
                    Show::text, title});
   } else if (const auto* table = look.plan->differences.table()) {
     auto shown = *table;
@@ -168,7 +169,7 @@ void add_text(const PlannedAxis& look, Record& out) {
   }
   if (!look.plan->unlisted.is_null())
     out.push_back({look.axis->name, look.plan->unlisted, Show::text,
-                   fmt::format("{}: not in the file, and not as the factory left it", look.axis->name)});
+                   formatted("{}: not in the file, and not as the factory left it", look.axis->name)});
 }
 
 std::size_t axes_to_do(std::span<const PlannedAxis> looks) {
@@ -184,15 +185,15 @@ std::size_t values_to_do(std::span<const PlannedAxis> looks) {
 }
 
 std::string count_text(std::size_t count, std::string_view one, std::string_view many) {
-  return fmt::format("{} {}", count, count == 1 ? one : many);
+  return formatted("{} {}", count, count == 1 ? one : many);
 }
 
 std::string differing(std::span<const PlannedAxis> looks) {
   const auto values = values_to_do(looks);
   const auto axes = axes_to_do(looks);
   if (values == 1) return "1 value of 1 axis";
-  return axes == 1 ? fmt::format("{} values of 1 axis", values)
-                   : fmt::format("{} values of {} axes", values, axes);
+  return axes == 1 ? formatted("{} values of 1 axis", values)
+                   : formatted("{} values of {} axes", values, axes);
 }
 
 std::string to_do_text(std::span<const PlannedAxis> looks) {
@@ -206,14 +207,14 @@ std::string to_do_text(std::span<const PlannedAxis> looks) {
 }  // namespace
 
 std::filesystem::path before_file(const Cabinet& cabinet, const Axis& axis) {
-  return fmt::format("{}.before-{}.json", cabinet.file.string(), axis.name);
+  return formatted("{}.before-{}.json", cabinet.file.string(), axis.name);
 }
 
 std::filesystem::path wanted_file(const Cabinet& cabinet, const Axis& axis,
                                   const std::filesystem::path& before) {
   const auto usual = before_file(cabinet, axis).stem().string();
-  return fmt::format("{}.wanted-{}{}", cabinet.file.string(), axis.name,
-                     before.filename().string().substr(usual.size()));
+  return formatted("{}.wanted-{}{}", cabinet.file.string(), axis.name,
+                   before.filename().string().substr(usual.size()));
 }
 
 std::vector<PlannedAxis> look_at_all(const show::Desk& desk, const Cabinet& cabinet,
@@ -251,7 +252,7 @@ Record plan_record(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
 std::string of_axis(const Axis& axis, const std::string& notice) {
   const show::AxisNames names({{axis.node, axis.name}});
   const auto named = names.in(notice);
-  return named.find(axis.name) == std::string::npos ? fmt::format("axis {}: {}", axis.name, named) : named;
+  return named.find(axis.name) == std::string::npos ? formatted("axis {}: {}", axis.name, named) : named;
 }
 
 Error of_axis(const Axis& axis, Error error) {
@@ -278,17 +279,15 @@ Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks
     std::vector<std::string> waiting;
     for (const auto& look : looks)
       if (look.waits_for_restart()) waiting.push_back(look.axis->name);
-    const auto names = fmt::format("{}", fmt::join(waiting, ","));
-    return make_error(Errc::negative,
-                      fmt::format("{}: values are stored and in force after a restart", names),
-                      fmt::format("restart the drives; `status -n {}` says how", names));
+    const auto names = formatted("{}", fmt::join(waiting, ","));
+    return make_error(Errc::negative, formatted("{}: values are stored and in force after a restart", names),
+                      formatted("restart the drives; `status -n {}` says how", names));
   }
-  return make_error(
-      Errc::negative,
-      values_to_do(looks) == 1
-          ? fmt::format("{} differs from {}", differing(looks), cabinet.file.filename().string())
-          : fmt::format("{} differ from {}", differing(looks), cabinet.file.filename().string()),
-      "`cabinet apply` writes them");
+  return make_error(Errc::negative,
+                    values_to_do(looks) == 1
+                        ? formatted("{} differs from {}", differing(looks), cabinet.file.filename().string())
+                        : formatted("{} differ from {}", differing(looks), cabinet.file.filename().string()),
+                    "`cabinet apply` writes them");
 }
 
 }  // namespace servoctl::cabinet

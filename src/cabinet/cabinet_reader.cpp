@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -6,6 +5,7 @@
 
 #include "base/duration.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_part.hpp"
 #include "cabinet/cabinet.hpp"
@@ -36,11 +36,11 @@ Result<std::vector<std::pair<std::string, const toml::table*>>> named_tables(con
                                                                              const toml::node& node) {
   std::vector<std::pair<std::string, const toml::table*>> out;
   const auto* all = node.as_table();
-  if (all == nullptr) return root.fail_at(node, fmt::format("'{0}' is a table of tables: [{0}.NAME]", kind));
+  if (all == nullptr) return root.fail_at(node, formatted("'{0}' is a table of tables: [{0}.NAME]", kind));
   for (const auto& [key, one] : *all) {
     const auto* table = one.as_table();
     if (table == nullptr)
-      return root.fail_at(one, fmt::format("'{0}' is no table: write [{1}.{0}]", key.str(), kind));
+      return root.fail_at(one, formatted("'{0}' is no table: write [{1}.{0}]", key.str(), kind));
     out.emplace_back(std::string(key.str()), table);
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
@@ -66,7 +66,7 @@ class CabinetReader {
     for (const auto step : {&CabinetReader::buses, &CabinetReader::defaults, &CabinetReader::axes})
       if (const auto done = (this->*step)(root, table); !done) return fail(done.error());
     if (out_.axes.empty())
-      return fail(Errc::file, fmt::format("{} has no axis", name_), "write [axis.NAME] with node and family");
+      return fail(Errc::file, formatted("{} has no axis", name_), "write [axis.NAME] with node and family");
     return std::move(out_);
   }
 
@@ -74,7 +74,7 @@ class CabinetReader {
   Result<void> buses(const TableReader& root, const toml::table& table) {
     const auto* node = table.get("bus");
     if (node == nullptr)
-      return fail(Errc::file, fmt::format("{} has no bus", name_), "write [bus.main] with url = \"can0\"");
+      return fail(Errc::file, formatted("{} has no bus", name_), "write [bus.main] with url = \"can0\"");
     const auto all = named_tables(root, "bus", *node);
     if (!all) return fail(all.error());
     for (const auto& [name, one] : *all) {
@@ -87,17 +87,17 @@ class CabinetReader {
                        {"bitrate", [&](const auto& n) { return read_bitrate(n, bus.bitrate); }}},
                       {{"url", "url = \"can0\""}, {"bitrate", kBitrateForm}});
       if (!done) return done;
-      if (bus.url.empty()) return reader.fail_at(*one, fmt::format("bus {}: 'url' is missing", name));
+      if (bus.url.empty()) return reader.fail_at(*one, formatted("bus {}: 'url' is missing", name));
       if (const auto good = session::check_url(bus.url); !good)
-        return fail_at(*one->get("url"), fmt::format("bus {}: {}", name, good.error().message),
+        return fail_at(*one->get("url"), formatted("bus {}: {}", name, good.error().message),
                        good.error().hint);
       if (session::is_modbus(bus.url))
         return fail_at(
-            *one->get("url"), fmt::format("bus {}: drives on Modbus cannot stand in a cabinet file", name),
+            *one->get("url"), formatted("bus {}: drives on Modbus cannot stand in a cabinet file", name),
             "name the line with -b and the drive with -d and -n; `backup` and `restore` work there");
       for (const auto& other : out_.buses)
         if (other.url == bus.url)
-          return fail_at(*one, fmt::format("bus {} is {}, and so is bus {}", name, bus.url, other.name),
+          return fail_at(*one, formatted("bus {} is {}, and so is bus {}", name, bus.url, other.name),
                          "one interface is one bus: put its axes on one of them");
       out_.buses.push_back(std::move(bus));
     }
@@ -145,13 +145,13 @@ class CabinetReader {
   Result<void> add_axes(const std::string& pattern, const toml::table& table, const AxisPart& part) {
     const auto names = expand_name(pattern);
     if (!names) return fail_at(table, names.error().message);
-    if (part.nodes.empty()) return fail_at(table, fmt::format("axis {}: 'node' is missing", pattern));
+    if (part.nodes.empty()) return fail_at(table, formatted("axis {}: 'node' is missing", pattern));
     if (names->size() != part.nodes.size())
-      return fail_at(table, fmt::format("axis {}: {} name{} for {} node{}", pattern, names->size(),
-                                        names->size() == 1 ? "" : "s", part.nodes.size(),
-                                        part.nodes.size() == 1 ? "" : "s"));
+      return fail_at(table, formatted("axis {}: {} name{} for {} node{}", pattern, names->size(),
+                                      names->size() == 1 ? "" : "s", part.nodes.size(),
+                                      part.nodes.size() == 1 ? "" : "s"));
     if (names->size() > 1 && part.serial)
-      return fail_at(table, fmt::format("axis {}: each drive has a serial number of its own", pattern));
+      return fail_at(table, formatted("axis {}: each drive has a serial number of its own", pattern));
     for (std::size_t i = 0; i < names->size(); ++i) {
       if (const auto good = check_name((*names)[i], "an axis", table); !good) return good;
       auto axis = make_axis((*names)[i], table, part);
@@ -174,22 +174,22 @@ class CabinetReader {
       }
       std::vector<std::string> known;
       for (const auto& one : groups_) known.push_back(one.first);
-      return fail_at(table, fmt::format("axis {}: there is no [group.{}]", name, *group),
+      return fail_at(table, formatted("axis {}: there is no [group.{}]", name, *group),
                      did_you_mean(*group, known));
     }
     if (part.family.empty())
-      return fail_at(table, fmt::format("axis {}: 'family' is missing: gsd600, or a file", name));
+      return fail_at(table, formatted("axis {}: 'family' is missing: gsd600, or a file", name));
     if (const auto found = families_.find(part.family); found != families_.end())
       fill_from(part, found->second);
     out.family = file_or_family(part.family);
     if (part.bus.empty() && out_.buses.size() == 1) part.bus = out_.buses.front().name;
     if (part.bus.empty())
-      return fail_at(table, fmt::format("axis {}: 'bus' is missing: there are {}", name, out_.buses.size()),
-                     fmt::format("bus = \"{}\", or that of another", out_.buses.front().name));
+      return fail_at(table, formatted("axis {}: 'bus' is missing: there are {}", name, out_.buses.size()),
+                     formatted("bus = \"{}\", or that of another", out_.buses.front().name));
     if (out_.bus(part.bus) == nullptr) {
       std::vector<std::string> known;
       for (const auto& bus : out_.buses) known.push_back(bus.name);
-      return fail_at(table, fmt::format("axis {}: there is no [bus.{}]", name, part.bus),
+      return fail_at(table, formatted("axis {}: there is no [bus.{}]", name, part.bus),
                      did_you_mean(part.bus, known));
     }
     out.bus = part.bus;
@@ -213,7 +213,7 @@ class CabinetReader {
       return {};
     }
     auto error = file_error(name_, part.per_turn_at.line, part.per_turn_at.column,
-                            fmt::format("per_turn: {}", load.error().message));
+                            formatted("per_turn: {}", load.error().message));
     error.hint = load.error().hint;
     return fail(std::move(error));
   }
@@ -234,10 +234,10 @@ class CabinetReader {
 
   Result<void> check_name(const std::string& name, std::string_view what, const toml::table& table) {
     if (!is_name(name))
-      return fail_at(table, fmt::format("'{}' cannot be the name of {}", name, what),
+      return fail_at(table, formatted("'{}' cannot be the name of {}", name, what),
                      "a letter first; no space, comma, dot or quote; not `all`");
     if (!names_.insert(name).second)
-      return fail_at(table, fmt::format("'{}' is the name of two things", name),
+      return fail_at(table, formatted("'{}' is the name of two things", name),
                      "axes and groups share their names: -n takes both");
     return {};
   }
@@ -247,8 +247,8 @@ class CabinetReader {
       for (std::size_t j = 0; j < i; ++j)
         if (out_.axes[i].bus == out_.axes[j].bus && out_.axes[i].node == out_.axes[j].node)
           return fail(cabinet_error(out_, out_.axes[i], out_.axes[i].at,
-                                    fmt::format("node {} on bus {} is axis {} already", out_.axes[i].node,
-                                                out_.axes[i].bus, out_.axes[j].name)));
+                                    formatted("node {} on bus {} is axis {} already", out_.axes[i].node,
+                                              out_.axes[i].bus, out_.axes[j].name)));
     return {};
   }
 

@@ -1,4 +1,5 @@
 #include "cabinet/cabinet_side.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 
 #include <fmt/format.h>
@@ -18,9 +19,9 @@ Result<CabinetSide> open_folder(const fs::path& folder) {
     if (!backup) return fail(backup.error());
     out.backups.emplace(file.path().stem().string(), std::move(*backup));
   }
-  if (error) return fail(Errc::file, fmt::format("{}: {}", folder.string(), error.message()));
+  if (error) return fail(Errc::file, formatted("{}: {}", folder.string(), error.message()));
   if (out.backups.empty())
-    return fail(Errc::file, fmt::format("{} contains no backup", folder.string()),
+    return fail(Errc::file, formatted("{} contains no backup", folder.string()),
                 "name a folder of `cabinet backup`, or a cabinet file");
   return out;
 }
@@ -31,11 +32,11 @@ void say(std::map<std::string, std::string>& out, const std::string& name, const
 
 template <class T>
 void say(std::map<std::string, std::string>& out, const std::string& name, const std::optional<T>& value) {
-  if (value) out.emplace(name, fmt::format("{}", *value));
+  if (value) out.emplace(name, formatted("{}", *value));
 }
 
 void say_recipe(std::map<std::string, std::string>& out, const drive::PdoRecipe& recipe) {
-  if (recipe.map) say(out, recipe.pdo + " map", fmt::format("{}", fmt::join(*recipe.map, ", ")));
+  if (recipe.map) say(out, recipe.pdo + " map", formatted("{}", fmt::join(*recipe.map, ", ")));
   say(out, recipe.pdo + " cob_id", recipe.cob_id);
   say(out, recipe.pdo + " valid", recipe.valid);
   say(out, recipe.pdo + " type", recipe.type);
@@ -65,21 +66,21 @@ Result<CabinetSide> open_cabinet_side(const fs::path& path) {
 std::map<std::string, std::string> said_of(const Axis& axis) {
   std::map<std::string, std::string> out;
   say(out, "bus", axis.bus);
-  say(out, "node", fmt::format("{}", axis.node));
+  say(out, "node", formatted("{}", axis.node));
   say(out, "family", axis.family);
-  say(out, "groups", fmt::format("{}", fmt::join(axis.groups, ", ")));
+  say(out, "groups", formatted("{}", fmt::join(axis.groups, ", ")));
   say(out, "serial", axis.serial);
   say(out, "turn", axis.turn);
   say(out, "encoder", axis.encoder);
   if (axis.load)
-    say(out, "load", fmt::format("{} {}/rev", plain_number(axis.load->per_rev, 9), axis.load->unit));
+    say(out, "load", formatted("{} {}/rev", plain_number(axis.load->per_rev, 9), axis.load->unit));
   say(out, "limits speed", axis.limits.speed);
   say(out, "limits torque", axis.limits.torque);
   say(out, "limits window", axis.limits.window);
   say(out, "limits following_error", axis.limits.following_error);
   if (axis.heartbeat)
     say(out, "heartbeat",
-        fmt::format("{} ms", std::chrono::duration_cast<std::chrono::milliseconds>(*axis.heartbeat).count()));
+        formatted("{} ms", std::chrono::duration_cast<std::chrono::milliseconds>(*axis.heartbeat).count()));
   say(out, "pdos", axis.pdos.preset);
   say(out, "pdos file", axis.pdos.file.string());
   for (const auto& recipe : axis.pdos.recipes) say_recipe(out, recipe);

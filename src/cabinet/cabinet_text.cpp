@@ -1,7 +1,6 @@
 #include "cabinet/cabinet_text.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/naming.hpp"
@@ -51,7 +50,7 @@ std::string line_of(const show::Desk& desk, std::uint8_t node, ObjectAddress obj
                                                                  : parameter->name);
   const auto key = is_bare_key(words.name) ? words.name : in_quotes(words.name);
   const auto value = is_whole_number(words.value) ? words.value : in_quotes(words.value);
-  return fmt::format("{} = {}{}", key, value, label.empty() ? "" : "  # " + label);
+  return formatted("{} = {}{}", key, value, label.empty() ? "" : "  # " + label);
 }
 
 std::string who(const session::Identity& identity, bool chinese) {
@@ -61,11 +60,11 @@ std::string who(const session::Identity& identity, bool chinese) {
   std::string out;
   if (identity.device_name.size() > 1) append(out, settings::comment_text(identity.device_name));
   if (identity.vendor_id.value_or(0) != 0)
-    append(out, say(fmt::format("vendor 0x{:08X}", *identity.vendor_id)));
+    append(out, say(formatted("vendor 0x{:08X}", *identity.vendor_id)));
   if (identity.product_code.value_or(0) != 0)
-    append(out, say(fmt::format("product 0x{:08X}", *identity.product_code)));
+    append(out, say(formatted("product 0x{:08X}", *identity.product_code)));
   if (!identity.software_version.empty())
-    append(out, say(fmt::format("software {}", settings::comment_text(identity.software_version))));
+    append(out, say(formatted("software {}", settings::comment_text(identity.software_version))));
   return chinese ? report::chinese_marks(out) : out;
 }
 
@@ -80,29 +79,29 @@ std::string family_lines(const FoundAxis& axis, bool chinese) {
                "# No family fits: name one (`servoctl drives`) or an .eds or .xml file, and take the # away.\n",
                chinese)) +
            "# family = \"\"\n";
-  auto out = fmt::format("family = {}", in_quotes(axis.family));
+  auto out = formatted("family = {}", in_quotes(axis.family));
   if (axis.guessed)
-    out += axis.others.empty()
-               ? std::string(comment("  # guessed by its identity: does the nameplate agree?", chinese))
-               : fmt::format(
-                     fmt::runtime(comment("  # guessed by its identity, which fits {} as well", chinese)),
-                     one_of(axis.others));
+    out +=
+        axis.others.empty()
+            ? std::string(comment("  # guessed by its identity: does the nameplate agree?", chinese))
+            : formatted(fmt::runtime(comment("  # guessed by its identity, which fits {} as well", chinese)),
+                        one_of(axis.others));
   return out + "\n";
 }
 
 std::string axis_text(const std::string& bus, const FoundAxis& axis, bool chinese) {
   const bool unknown = axis.family.empty();
   const std::string mark = unknown ? "# " : "";
-  auto out = fmt::format("\n{0}[axis.{1}]", mark, axis.name);
+  auto out = formatted("\n{0}[axis.{1}]", mark, axis.name);
   if (const auto told = who(axis.identity, chinese); !told.empty()) out += "  # " + told;
-  out += fmt::format("\n{0}bus = {1}\n{0}node = {2}\n{3}", mark, in_quotes(bus), axis.node,
-                     family_lines(axis, chinese));
+  out += formatted("\n{0}bus = {1}\n{0}node = {2}\n{3}", mark, in_quotes(bus), axis.node,
+                   family_lines(axis, chinese));
   if (unknown) return out;
   if (axis.identity.serial.value_or(0) != 0)
-    out += fmt::format("serial = \"0x{:08X}\"\n", *axis.identity.serial);
+    out += formatted("serial = \"0x{:08X}\"\n", *axis.identity.serial);
   out +=
       axis.increments
-          ? fmt::format(
+          ? formatted(
                 fmt::runtime(comment(
                     "# The drive tells its {} increments of 6064h per motor revolution: `turn` is not needed.\n",
                     chinese)),
@@ -113,10 +112,10 @@ std::string axis_text(const std::string& bus, const FoundAxis& axis, bool chines
   out += comment("# gear = \"10:1\"            # motor to output\n", chinese);
   out += comment("# per_turn = \"20 mm\"       # what the load moves in one turn of the output\n", chinese);
   out += "# limits = { speed = \"300rpm\", torque = \"80%\" }\n";
-  if (axis.heartbeat_ms) out += fmt::format("heartbeat = \"{}ms\"\n", *axis.heartbeat_ms);
-  if (!axis.pdo_file.empty()) out += fmt::format("pdos = {}\n", in_quotes(axis.pdo_file));
+  if (axis.heartbeat_ms) out += formatted("heartbeat = \"{}ms\"\n", *axis.heartbeat_ms);
+  if (!axis.pdo_file.empty()) out += formatted("pdos = {}\n", in_quotes(axis.pdo_file));
   if (axis.parameters.empty()) return out;
-  out += fmt::format("[axis.{}.parameters]\n", axis.name);
+  out += formatted("[axis.{}.parameters]\n", axis.name);
   for (const auto& line : axis.parameters) out += line + "\n";
   return out;
 }
@@ -168,7 +167,7 @@ std::string cabinet_text(const std::string& bus, const std::string& url, const s
         "format = 1\n\n";
   else
     out += "\n";
-  out += fmt::format("[bus.{}]\nurl = {}\n", bus, in_quotes(url));
+  out += formatted("[bus.{}]\nurl = {}\n", bus, in_quotes(url));
   if (whole && !session::is_ethercat(url)) out += "# bitrate = \"500k\"\n";
   for (const auto& axis : axes) out += axis_text(bus, axis, chinese);
   return out;

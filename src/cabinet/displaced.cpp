@@ -1,9 +1,9 @@
 #include "cabinet/displaced.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "drive/standard_objects.hpp"
@@ -67,7 +67,7 @@ Result<void> put_in_place(const show::Desk& desk, const Station& station, const 
     if (outcome.error) return fail(*outcome.error);
     if (outcome.end == AddressEnd::moved) return {};
     return fail(make_error(Errc::negative,
-                           fmt::format("its node-ID {} holds when it was switched off and on", node),
+                           formatted("its node-ID {} holds when it was switched off and on", node),
                            "switch it off and on, then repeat the line: it goes on from there"));
   };
   const auto done = carry_out();
@@ -93,7 +93,7 @@ std::vector<Displaced> find_displaced(const show::Desk& desk, std::span<const St
     if (!hold_axis_identity(at, there, choice.families)) continue;
     looks[i].plan = fail(drive_error(
         Errc::negative, station.axis->node,
-        fmt::format("its drive (serial number {}) is at node-ID {}", serial_text(*there.serial), there.node),
+        formatted("its drive (serial number {}) is at node-ID {}", serial_text(*there.serial), there.node),
         "`cabinet apply` asks and gives it its node-ID first; what else differs is shown then"));
     out.push_back({i, there.node, *there.serial});
   }
@@ -108,10 +108,10 @@ Result<void> place_displaced(const show::Desk& desk, const Cabinet& cabinet,
   std::string which;
   for (const auto& one : displaced)
     append(which,
-           fmt::format("{} (serial number {}) from node-ID {} to {}", looks[one.look].axis->name,
-                       serial_text(one.serial), one.at, looks[one.look].axis->node),
+           formatted("{} (serial number {}) from node-ID {} to {}", looks[one.look].axis->name,
+                     serial_text(one.serial), one.at, looks[one.look].axis->node),
            ", ");
-  if (const auto agreed = desk.confirm(fmt::format("Re-address {}?", which)); !agreed) return agreed;
+  if (const auto agreed = desk.confirm(formatted("Re-address {}?", which)); !agreed) return agreed;
   for (const auto& one : displaced) {
     auto& look = looks[one.look];
     const auto& station = stations[one.look];

@@ -1,8 +1,8 @@
 #include "cabinet/name_pattern.hpp"
 
-#include <fmt/format.h>
 #include <cctype>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
@@ -32,7 +32,7 @@ Result<std::vector<std::string>> expand_name(const std::string& pattern) {
   const auto ends = split(std::string_view(inside), '-');
   const auto refused = [&] {
     return fail(Errc::file,
-                fmt::format("'{}': write a rising range in the braces, as feeder{{1-40}}", pattern));
+                formatted("'{}': write a rising range in the braces, as feeder{{1-40}}", pattern));
   };
   if (ends.size() != 2) return refused();
   const auto first = parse_digits(ends[0], 10);
@@ -41,7 +41,7 @@ Result<std::vector<std::string>> expand_name(const std::string& pattern) {
   std::vector<std::string> out;
   for (auto i = *first; i <= *last; ++i)
     out.push_back(
-        fmt::format("{}{:0{}}{}", pattern.substr(0, open), i, ends[0].size(), pattern.substr(close + 1)));
+        formatted("{}{:0{}}{}", pattern.substr(0, open), i, ends[0].size(), pattern.substr(close + 1)));
   return out;
 }
 

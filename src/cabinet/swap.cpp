@@ -1,9 +1,9 @@
 #include "cabinet/swap.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 
+#include "base/format.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cabinet/axis_needs.hpp"
 #include "session/family_check.hpp"
@@ -65,13 +65,13 @@ class Swapping {
       return std::any_of(found->begin(), found->end(), [&](const auto& one) { return one.node == node; });
     };
     if (is_there(at_) && is_there(axis_.node))
-      return fail(drive_error(
-          Errc::refused, axis_.node,
-          fmt::format("the place of {} is taken, and the new drive is at node {}", axis_.name, at_),
-          "take the old drive off the bus; `scan --long` shows both"));
+      return fail(
+          drive_error(Errc::refused, axis_.node,
+                      formatted("the place of {} is taken, and the new drive is at node {}", axis_.name, at_),
+                      "take the old drive off the bus; `scan --long` shows both"));
     if (!is_there(at_) && !is_there(axis_.node))
       return fail(make_error(Errc::timeout,
-                             fmt::format("neither node-ID {} nor node-ID {} answers", at_, axis_.node),
+                             formatted("neither node-ID {} nor node-ID {} answers", at_, axis_.node),
                              "is the new drive powered and on this bus? `scan` shows who is there"));
     if (!is_there(at_)) at_ = axis_.node;
     return {};
@@ -88,10 +88,10 @@ class Swapping {
                  session::FamilyVerdict::Kind::proven;
     if (const auto own = refuse_listed(); !own) return own;
     is_same_ = axis_.serial.value_or(0) != 0 && identity_.serial == axis_.serial;
-    desk_.tell(fmt::format("{}: a {} at node {}, serial number {}; the file says {}{}\n", axis_.name,
-                           axis_.family, at_, known_serial(identity_.serial),
-                           serial_text(axis_.serial.value_or(0)),
-                           is_same_ ? ": the drive that was there" : ""));
+    desk_.tell(formatted("{}: a {} at node {}, serial number {}; the file says {}{}\n", axis_.name,
+                         axis_.family, at_, known_serial(identity_.serial),
+                         serial_text(axis_.serial.value_or(0)),
+                         is_same_ ? ": the drive that was there" : ""));
     return {};
   }
 
@@ -108,12 +108,12 @@ class Swapping {
       if (!is_it && !may_be) continue;
       return fail(drive_error(
           Errc::refused, at_,
-          is_it ? fmt::format("its serial number is that of axis {} in the file", other.name)
-                : fmt::format("the file has axis {} there, and nothing tells that this is another drive",
-                              other.name),
+          is_it ? formatted("its serial number is that of axis {} in the file", other.name)
+                : formatted("the file has axis {} there, and nothing tells that this is another drive",
+                            other.name),
           is_it
               ? "is it the new drive? `cabinet plan` shows who is where"
-              : fmt::format(
+              : formatted(
                     "where it is the new drive: `address {} -n {} -b {} -d {}` gives it its node, then repeat "
                     "the line without --from; or write `serial` of both into the file, if they have one",
                     axis_.node, at_, axis_.bus, axis_.family)));
@@ -132,7 +132,7 @@ class Swapping {
       settings_ = std::move(*frames);
       return {};
     }
-    if (const auto agreed = desk_.confirm(fmt::format(
+    if (const auto agreed = desk_.confirm(formatted(
             "Put the drive at node {} into the place of {} (node-ID {})?", at_, axis_.name, axis_.node));
         !agreed)
       return agreed;
@@ -140,11 +140,10 @@ class Swapping {
     moved_ = settings::text_of(outcome.end);
     if (outcome.error) return fail(*outcome.error);
     if (outcome.end != AddressEnd::moved)
-      return fail(
-          drive_error(Errc::negative, at_,
-                      fmt::format("its node-ID {} holds when it was switched off and on", axis_.node),
-                      "switch it off and on, then repeat the line: it goes on from there; --wait 5min "
-                      "waits for it"));
+      return fail(drive_error(
+          Errc::negative, at_, formatted("its node-ID {} holds when it was switched off and on", axis_.node),
+          "switch it off and on, then repeat the line: it goes on from there; --wait 5min "
+          "waits for it"));
     return {};
   }
 
@@ -189,24 +188,24 @@ class Swapping {
   void tell_rest() {
     if (is_same_) {
       desk_.notices.push_back(
-          fmt::format("axis {}: this is the drive that was there: no drive was exchanged", axis_.name));
+          formatted("axis {}: this is the drive that was there: no drive was exchanged", axis_.name));
       return;
     }
     if (axis_.serial && identity_.serial && axis_.serial != identity_.serial)
-      desk_.notices.push_back(fmt::format(
+      desk_.notices.push_back(formatted(
           "in {}, [axis.{}]: {}; until then `plan` and `apply` refuse the new drive",
           cabinet_.file.filename().string(), axis_.name,
           *identity_.serial == 0 ? std::string("take `serial` out, the new drive tells none")
-                                 : fmt::format("change `serial` to \"0x{:08X}\"", *identity_.serial)));
-    desk_.notices.push_back(fmt::format(
+                                 : formatted("change `serial` to \"0x{:08X}\"", *identity_.serial)));
+    desk_.notices.push_back(formatted(
         "axis {}: the encoder's offset and the home position are not among the settings: `home` it, "
         "and check the direction and the limits before it runs",
         axis_.name));
     if (!desk_.profile->rules.learn.speed.empty())
       desk_.notices.push_back(
-          fmt::format("axis {}: counts that `units learn` measured belong to the old drive", axis_.name));
+          formatted("axis {}: counts that `units learn` measured belong to the old drive", axis_.name));
     if (options_->backup.empty())
-      desk_.notices.push_back(fmt::format(
+      desk_.notices.push_back(formatted(
           "axis {}: settings that are not in the file are as the new drive has them: `--backup DIR` restores all "
           "that were saved",
           axis_.name));

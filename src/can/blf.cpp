@@ -2,11 +2,11 @@
 
 #include <linux/can/error.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 #include <string>
 
+#include "base/format.hpp"
 #include "can/byte_cursor.hpp"
 #include "can/unpack.hpp"
 
@@ -169,7 +169,7 @@ class BlfReader {
   }
 
   void cut_short(std::size_t size, std::size_t left) {
-    damaged(at_, fmt::format("an object of {} bytes begins there, and {} are left", size, left));
+    damaged(at_, formatted("an object of {} bytes begins there, and {} are left", size, left));
   }
 
   /// One object of the file itself: mostly a container. False: no more.
@@ -210,7 +210,7 @@ class BlfReader {
     const std::size_t size = in.u32();
     in.skip(4);
     if (!in.ok() || object.size() < kContainerHeader || (method != kPlain && method != kZlib)) {
-      damaged(at_, fmt::format("a container of an unknown kind ({}) begins there", method));
+      damaged(at_, formatted("a container of an unknown kind ({}) begins there", method));
       return false;
     }
     if (method == kPlain) {
@@ -241,7 +241,7 @@ class BlfReader {
       const auto head = head_of(rest.substr(mark));
       if (!head) break;
       if (head->size < kBaseHeader || head->size > kMostObject) {
-        damaged(at_, fmt::format("the container there holds an object of {} bytes", head->size));
+        damaged(at_, formatted("the container there holds an object of {} bytes", head->size));
         return false;
       }
       if (rest.size() - mark < head->size) break;
@@ -265,8 +265,7 @@ class BlfReader {
     const auto kind = parse_object(head, body, channel, frame);
     if (kind == Object::malformed) out_.add_unknown(number_);
     out_.unsuited += kind == Object::unsuited;
-    if (kind == Object::frame)
-      ended_ = !(*take_)({object_time(object), fmt::format("can{}", channel), frame});
+    if (kind == Object::frame) ended_ = !(*take_)({object_time(object), formatted("can{}", channel), frame});
   }
 
   std::string_view content_;

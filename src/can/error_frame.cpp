@@ -1,10 +1,10 @@
 #include "can/error_frame.hpp"
 
-#include <fmt/format.h>
 #include <linux/can/error.h>
 
 #include <numeric>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::can {
@@ -69,7 +69,7 @@ std::string WireErrors::text() const {
   std::string out;
   for (std::size_t i = 0; i < counts_.size(); ++i)
     if (counts_[i] > 0)
-      servoctl::append(out, fmt::format("{} × {}", counts_[i], can::text(static_cast<WireError>(i))), ", ");
+      servoctl::append(out, formatted("{} × {}", counts_[i], can::text(static_cast<WireError>(i))), ", ");
   return out;
 }
 

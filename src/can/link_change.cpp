@@ -6,11 +6,11 @@
 #include <netlink/attr.h>
 #include <netlink/msg.h>
 
-#include <fmt/format.h>
 #include <cerrno>
 #include <memory>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "can/route_socket.hpp"
 #include "can/socketcan.hpp"
 #include "can/socketcan_error.hpp"
@@ -122,15 +122,15 @@ Bytes link_message(unsigned index, const LinkChange& change) {
 }
 
 std::string ip_command(const std::string& name, const LinkChange& change) {
-  auto out = fmt::format("ip link set {}", name);
+  auto out = formatted("ip link set {}", name);
   if (change.up) out += *change.up ? " up" : " down";
-  if (change.queue_length) out += fmt::format(" txqueuelen {}", *change.queue_length);
+  if (change.queue_length) out += formatted(" txqueuelen {}", *change.queue_length);
   if (sets_controller(change)) out += " type can";
-  if (change.bitrate) out += fmt::format(" bitrate {}", *change.bitrate);
+  if (change.bitrate) out += formatted(" bitrate {}", *change.bitrate);
   if (change.bitrate && change.sample_point)
-    out += fmt::format(" sample-point {:.3f}", *change.sample_point / 1000.0);
-  if (change.restart_ms) out += fmt::format(" restart-ms {}", *change.restart_ms);
-  if (change.listen_only) out += fmt::format(" listen-only {}", *change.listen_only ? "on" : "off");
+    out += formatted(" sample-point {:.3f}", *change.sample_point / 1000.0);
+  if (change.restart_ms) out += formatted(" restart-ms {}", *change.restart_ms);
+  if (change.listen_only) out += formatted(" listen-only {}", *change.listen_only ? "on" : "off");
   return out;
 }
 

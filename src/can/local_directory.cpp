@@ -13,6 +13,8 @@
 #include <cstdlib>
 #include <iterator>
 
+#include "base/format.hpp"
+
 namespace servoctl::can {
 namespace {
 
@@ -26,14 +28,14 @@ bool is_own_directory(const std::string& path) {
 /// Looks beyond the environment: a service and a shell of the same user must meet on the same bus.
 std::string base_path() {
   const char* const named = std::getenv("XDG_RUNTIME_DIR");
-  if (named != nullptr && *named == '/' && is_own_directory(named)) return fmt::format("{}/servoctl", named);
-  const auto usual = fmt::format("/run/user/{}", ::geteuid());
+  if (named != nullptr && *named == '/' && is_own_directory(named)) return formatted("{}/servoctl", named);
+  const auto usual = formatted("/run/user/{}", ::geteuid());
   if (is_own_directory(usual)) return usual + "/servoctl";
-  return fmt::format("/tmp/servoctl-{}", ::geteuid());
+  return formatted("/tmp/servoctl-{}", ::geteuid());
 }
 
 tl::unexpected<Error> cannot_use(const std::string& path, const std::string& why) {
-  return fail(Errc::bus, fmt::format("cannot use {} for the bus: {}", path, why),
+  return fail(Errc::bus, formatted("cannot use {} for the bus: {}", path, why),
               "remove it, or set XDG_RUNTIME_DIR to your own directory for all processes on the bus");
 }
 
@@ -67,14 +69,14 @@ Result<void> check_local_name(std::string_view name) {
   constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
   if (!name.empty() && name.size() <= 32 && name.find_first_not_of(kAllowed) == std::string_view::npos)
     return {};
-  return fail(Errc::usage, fmt::format("'{}' cannot be the name of a local bus", name),
+  return fail(Errc::usage, formatted("'{}' cannot be the name of a local bus", name),
               "use 1 to 32 of these: A-Z a-z 0-9 . _ -");
 }
 
 Result<LocalDirectory> LocalDirectory::open(std::string_view bus_name) {
   const auto base = base_path();
   if (const auto parent = open_private(base); !parent) return fail(parent.error());
-  auto path = fmt::format("{}/bus-{}", base, bus_name);
+  auto path = formatted("{}/bus-{}", base, bus_name);
   auto directory = open_private(path);
   if (!directory) return fail(directory.error());
   Descriptor lock(::openat(directory->get(), "lock", O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0600));
@@ -93,7 +95,7 @@ Result<std::string> LocalDirectory::join(int socket) const {
   // A name is taken when this process has joined before, or when a dead one with its process id left the
   // file.
   for (int count = 0;; ++count) {
-    auto member = fmt::format("{}{}-{}", kMemberPrefix, ::getpid(), count);
+    auto member = formatted("{}{}-{}", kMemberPrefix, ::getpid(), count);
     const auto address = address_of(::dirfd(listing_.get()), member);
     if (::bind(socket, generic(address), sizeof address) == 0) return member;
     if (errno != EADDRINUSE) return cannot_use(path_ + "/" + member, system_text(errno));

@@ -2,11 +2,11 @@
 
 #include <linux/can.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 #include <vector>
 
+#include "base/format.hpp"
 #include "can/byte_cursor.hpp"
 
 namespace servoctl::can {
@@ -136,7 +136,7 @@ class PcapReader {
       const std::size_t size = in.u32();
       const std::size_t left = content_.size() - at - kPacketHeader;
       if (size > left)
-        return damaged(at, fmt::format("a packet of {} bytes begins there, and {} are left", size, left));
+        return damaged(at, formatted("a packet of {} bytes begins there, and {} are left", size, left));
       const auto bytes = content_.substr(at + kPacketHeader, size);
       if (!take(source, bytes, since_epoch(seconds, nanos ? fraction / 1000 : fraction))) return;
       at += kPacketHeader + size;
@@ -156,10 +156,9 @@ class PcapReader {
       ByteCursor in(content_.substr(at), big_);
       const auto type = in.u32();
       const std::size_t size = in.u32();
-      if (size < 12 || size % 4 != 0)
-        return damaged(at, fmt::format("a block of {} bytes begins there", size));
+      if (size < 12 || size % 4 != 0) return damaged(at, formatted("a block of {} bytes begins there", size));
       if (size > left)
-        return damaged(at, fmt::format("a block of {} bytes begins there, and {} are left", size, left));
+        return damaged(at, formatted("a block of {} bytes begins there, and {} are left", size, left));
       if (!read_block(type, content_.substr(at + 8, size - 12))) return;
       at += size;
     }
@@ -198,7 +197,7 @@ class PcapReader {
     constexpr std::uint16_t kName = 2;
     constexpr std::uint16_t kResolution = 9;
     ByteCursor in(body, big_);
-    Source source{in.u16(), fmt::format("can{}", sources_.size()), 6};
+    Source source{in.u16(), formatted("can{}", sources_.size()), 6};
     in.skip(6);
     while (in.ok() && in.rest().size() >= 4) {
       const auto code = in.u16();

@@ -1,8 +1,8 @@
 #include "can/recording.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "can/asc.hpp"
 #include "can/blf.hpp"
@@ -72,7 +72,7 @@ std::map<std::string, std::size_t> frames_of_buses(std::string_view content) {
 
 std::string list_of(const std::map<std::string, std::size_t>& buses) {
   std::string out;
-  for (const auto& [name, count] : buses) servoctl::append(out, fmt::format("{} ({})", name, count));
+  for (const auto& [name, count] : buses) servoctl::append(out, formatted("{} ({})", name, count));
   return out;
 }
 

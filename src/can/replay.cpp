@@ -1,10 +1,10 @@
 #include "can/replay.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "can/recording.hpp"
 
 namespace servoctl::can {
@@ -31,11 +31,10 @@ Result<void> check_channel(const std::string& file, std::string_view text, const
   const auto buses = frames_of_buses(text);
   if (channel.empty() ? buses.size() < 2 : buses.count(channel) > 0) return {};
   if (!channel.empty())
-    return fail(Errc::usage, fmt::format("{} has no frame of {}", file, channel),
-                fmt::format("it has frames of {}", list_of(buses)));
-  return fail(
-      Errc::usage, fmt::format("{} has frames of several buses: {}", file, list_of(buses)),
-      fmt::format("name the one that is to answer: replay:{}?channel={}", file, buses.begin()->first));
+    return fail(Errc::usage, formatted("{} has no frame of {}", file, channel),
+                formatted("it has frames of {}", list_of(buses)));
+  return fail(Errc::usage, formatted("{} has frames of several buses: {}", file, list_of(buses)),
+              formatted("name the one that is to answer: replay:{}?channel={}", file, buses.begin()->first));
 }
 
 TimePoint time_of(const LogFrame& line) { return TimePoint(line.time); }
@@ -53,7 +52,7 @@ Result<void> ReplayBus::send(const Frame& frame) {
     skip_done();
     return {};
   }
-  return fail(Errc::bus, fmt::format("{} is not in the rest of the recording {}", to_string(frame), name_),
+  return fail(Errc::bus, formatted("{} is not in the rest of the recording {}", to_string(frame), name_),
               "a recording answers only its original commands, in order; `decode` shows them");
 }
 
@@ -86,12 +85,12 @@ Result<std::unique_ptr<Bus>> open_replay(std::string_view place) {
     return true;
   });
   if (strays.damage)
-    return fail(Errc::file,
-                fmt::format("{} is damaged at byte {}: {}", file.string(), strays.damage->offset,
-                            strays.damage->what),
-                "`decode` shows what stands in front of that byte");
+    return fail(
+        Errc::file,
+        formatted("{} is damaged at byte {}: {}", file.string(), strays.damage->offset, strays.damage->what),
+        "`decode` shows what stands in front of that byte");
   if (lines.empty())
-    return fail(Errc::file, fmt::format("{} contains no frames", file.string()),
+    return fail(Errc::file, formatted("{} contains no frames", file.string()),
                 "recordings are what `decode` reads; `--trace FILE` writes them");
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   return std::make_unique<ReplayBus>(std::move(lines), file.string());

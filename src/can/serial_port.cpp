@@ -16,6 +16,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -25,29 +26,29 @@ namespace {
 std::string serial_ports_text() {
   const auto ports = serial_adapters();
   if (ports.empty()) return "this machine has no USB serial port; the end of dmesg tells what the kernel saw";
-  return fmt::format("USB serial ports: {}", fmt::join(ports, ", "));
+  return formatted("USB serial ports: {}", fmt::join(ports, ", "));
 }
 
 tl::unexpected<Error> serial_in_use(const std::string& device) {
-  return fail(Errc::bus, fmt::format("{} is in use by another program", device),
-              fmt::format("`fuser -v {}` shows which; another servoctl, slcand, a terminal program or "
-                          "ModemManager",
-                          device));
+  return fail(Errc::bus, formatted("{} is in use by another program", device),
+              formatted("`fuser -v {}` shows which; another servoctl, slcand, a terminal program or "
+                        "ModemManager",
+                        device));
 }
 
 tl::unexpected<Error> serial_not_opened(const std::string& device, int error) {
   if (error == EBUSY || error == EWOULDBLOCK) return serial_in_use(device);
   if (error == ENOENT)
-    return fail(Errc::bus, fmt::format("there is no {}", device),
-                fmt::format("is the adapter plugged in? {}", serial_ports_text()));
+    return fail(Errc::bus, formatted("there is no {}", device),
+                formatted("is the adapter plugged in? {}", serial_ports_text()));
   if (error == EACCES || error == EPERM)
-    return fail(Errc::bus, fmt::format("{} may not be opened: {}", device, system_text(error)),
+    return fail(Errc::bus, formatted("{} may not be opened: {}", device, system_text(error)),
                 "its group may, mostly dialout: `sudo usermod -aG dialout $USER`, then log in again");
   if (error == ENOTTY || error == EISDIR || error == EINVAL)
-    return fail(Errc::bus, fmt::format("{} is no serial port", device), serial_ports_text());
+    return fail(Errc::bus, formatted("{} is no serial port", device), serial_ports_text());
   if (error == ENXIO || error == EIO || error == ENODEV)
-    return fail(Errc::bus, fmt::format("there is no adapter behind {}", device), serial_ports_text());
-  return fail(Errc::bus, fmt::format("cannot open {}: {}", device, system_text(error)), serial_ports_text());
+    return fail(Errc::bus, formatted("there is no adapter behind {}", device), serial_ports_text());
+  return fail(Errc::bus, formatted("cannot open {}: {}", device, system_text(error)), serial_ports_text());
 }
 
 unsigned character_flags(const SerialLine& line) {
@@ -71,7 +72,7 @@ termios2 raw_settings(const SerialLine& line) {
 
 Result<void> set_line(int port, const SerialLine& line) {
   const auto refused = [&](std::string_view why) {
-    return fail(Errc::bus, fmt::format("{} does not take {}: {}", line.device, line.text(), why),
+    return fail(Errc::bus, formatted("{} does not take {}: {}", line.device, line.text(), why),
                 "use a speed that the port and what hangs at it both have");
   };
   const auto raw = raw_settings(line);
@@ -80,7 +81,7 @@ Result<void> set_line(int port, const SerialLine& line) {
   if (::ioctl(port, TCGETS2, &now) != 0) return refused(system_text(errno));
   // What a receiver of eleven bits bears.
   const auto off = now.c_ospeed > line.baud ? now.c_ospeed - line.baud : line.baud - now.c_ospeed;
-  if (off * 50 > line.baud) return refused(fmt::format("it would run at {}", now.c_ospeed));
+  if (off * 50 > line.baud) return refused(formatted("it would run at {}", now.c_ospeed));
   return {};
 }
 
@@ -94,7 +95,7 @@ void ask_for_low_latency(int port) {
 
 }  // namespace
 
-std::string SerialLine::text() const { return fmt::format("{},{}{}{}", baud, data_bits, parity, stop_bits); }
+std::string SerialLine::text() const { return formatted("{},{}{}{}", baud, data_bits, parity, stop_bits); }
 
 std::optional<std::uint32_t> parse_baud(std::string_view text) {
   const auto baud = parse_digits(text, 10);
@@ -163,8 +164,8 @@ Result<SerialPort> SerialPort::open(const SerialLine& line) {
 
 tl::unexpected<Error> SerialPort::gone(int error) const {
   if (error == 0 || error == EIO || error == ENXIO || error == ENODEV)
-    return fail(Errc::bus, fmt::format("{} is gone", device_), "was the adapter unplugged? plug it in again");
-  return fail(Errc::bus, fmt::format("{} failed: {}", device_, system_text(error)),
+    return fail(Errc::bus, formatted("{} is gone", device_), "was the adapter unplugged? plug it in again");
+  return fail(Errc::bus, formatted("{} failed: {}", device_, system_text(error)),
               "was the adapter unplugged? plug it in again");
 }
 
@@ -178,7 +179,7 @@ Result<void> SerialPort::write(std::string_view text, TimePoint limit) {
     if (wrote < 0 && errno == EINTR) continue;
     if (wrote < 0 && errno != EAGAIN) return gone(errno);
     if (steady_now() >= limit)
-      return fail(Errc::bus, fmt::format("{} takes nothing any more", device_),
+      return fail(Errc::bus, formatted("{} takes nothing any more", device_),
                   "unplug the adapter and plug it in again");
     wait_for(port_.get(), POLLOUT, limit);
   }

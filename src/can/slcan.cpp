@@ -2,11 +2,11 @@
 
 #include <poll.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/signal_wait.hpp"
 
 namespace servoctl::can {
@@ -52,7 +52,7 @@ Result<void> SlcanBus::write(std::string_view text, TimePoint limit) {
 Result<void> SlcanBus::send(const Frame& frame) {
   if (!is_of_the_protocol(frame))
     return fail(Errc::bug,
-                fmt::format("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
+                formatted("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
   if (!is_open()) return not_open();
   const auto line = slcan_line(frame);
   const auto limit = now() + kSlcanSendLimit;
@@ -68,7 +68,7 @@ Result<void> SlcanBus::send(const Frame& frame) {
     if (now() >= limit)
       return fail(
           Errc::bus,
-          fmt::format("the adapter at {} refuses frames: its transmit queue remains full", place_.device),
+          formatted("the adapter at {} refuses frames: its transmit queue remains full", place_.device),
           "is another node on the bus, and is the bitrate right?");
     nap(kOfferPause);
   }
@@ -92,8 +92,7 @@ Result<SlcanBus::Answer> SlcanBus::answer_to_frame(TimePoint limit) {
     if (!answer || *answer != Answer::none) return answer;
   }
   if (!version_came_ && (frame_was_acknowledged_ || !version_.empty()))
-    return lose(make_error(Errc::bus,
-                           fmt::format("the adapter at {} does not answer any more", place_.device),
+    return lose(make_error(Errc::bus, formatted("the adapter at {} does not answer any more", place_.device),
                            "unplug it and plug it in again"));
   if (frame_was_acknowledged_)
     ++unanswered_;
@@ -139,7 +138,7 @@ Result<void> SlcanBus::fill() {
   if (!got) return lose(got.error());
   if (watch_.state() == SlcanWatch::State::restarted)
     return lose(
-        make_error(Errc::bus, fmt::format("the adapter at {} has started anew, and is closed", place_.device),
+        make_error(Errc::bus, formatted("the adapter at {} has started anew, and is closed", place_.device),
                    "is its plug loose, or its supply too weak? It is opened again by the next command"));
   return {};
 }
@@ -187,8 +186,7 @@ TimePoint SlcanBus::stamped(std::uint16_t stamp, TimePoint time) {
 Result<void> SlcanBus::ask_again() {
   const auto question = watch_.take_question(now());
   if (watch_.state() == SlcanWatch::State::silent)
-    return lose(make_error(Errc::bus,
-                           fmt::format("the adapter at {} does not answer any more", place_.device),
+    return lose(make_error(Errc::bus, formatted("the adapter at {} does not answer any more", place_.device),
                            "unplug it and plug it in again"));
   return question.empty() ? Result<void>() : write(question, now() + SlcanWatch::kPatience);
 }
@@ -219,16 +217,16 @@ Result<std::optional<Frame>> SlcanBus::receive(TimePoint deadline) {
 std::vector<std::string> SlcanBus::take_notices() {
   std::vector<std::string> out;
   if (const auto count = std::exchange(damaged_, 0); count > 0)
-    out.push_back(fmt::format(
+    out.push_back(formatted(
         "{}: {} damaged line{} left out: bytes were lost between adapter and computer, and frames with them",
         place_.device, count, count == 1 ? " was" : "s were"));
   if (const auto count = std::exchange(unanswered_, 0); count > 0)
-    out.push_back(fmt::format("{}: {} frame{} not acknowledged by the adapter: whether {} sent is not known",
-                              place_.device, count, count == 1 ? " was" : "s were",
-                              count == 1 ? "it was" : "they were"));
+    out.push_back(formatted("{}: {} frame{} not acknowledged by the adapter: whether {} sent is not known",
+                            place_.device, count, count == 1 ? " was" : "s were",
+                            count == 1 ? "it was" : "they were"));
   if (const auto count = std::exchange(refused_late_, 0); count > 0)
-    out.push_back(fmt::format("{}: the adapter refused {} frame{} after a while: {} not sent", place_.device,
-                              count, count == 1 ? "" : "s", count == 1 ? "it was" : "they were"));
+    out.push_back(formatted("{}: the adapter refused {} frame{} after a while: {} not sent", place_.device,
+                            count, count == 1 ? "" : "s", count == 1 ? "it was" : "they were"));
   return out;
 }
 

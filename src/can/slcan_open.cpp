@@ -1,10 +1,10 @@
 // How the bus behind an adapter is opened, closed and opened again.
 #include <poll.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/signal_wait.hpp"
 #include "can/slcan.hpp"
 
@@ -108,26 +108,26 @@ Result<void> SlcanBus::judge(const SlcanOpening& opening) const {
     case SlcanOpening::State::open: return {};
     case SlcanOpening::State::refused_bitrate:
       return fail(Errc::usage,
-                  fmt::format("the adapter at {} refuses {} kbit/s", place_.device, place_.bitrate / 1000),
+                  formatted("the adapter at {} refuses {} kbit/s", place_.device, place_.bitrate / 1000),
                   "its manual lists the bitrates that it has");
     case SlcanOpening::State::refused_listening:
       return fail(Errc::usage,
                   opening.acknowledges()
-                      ? fmt::format("the adapter at {} cannot listen without acknowledging", place_.device)
-                      : fmt::format("the adapter at {} answers to no command: whether it would only listen, "
-                                    "nobody knows",
-                                    place_.device),
+                      ? formatted("the adapter at {} cannot listen without acknowledging", place_.device)
+                      : formatted("the adapter at {} answers to no command: whether it would only listen, "
+                                  "nobody knows",
+                                  place_.device),
                   "only listen-only leaves a bus undisturbed at a wrong bitrate: use another adapter, or ask "
                   "what the bitrate is");
     case SlcanOpening::State::refused_opening:
-      return fail(Errc::bus, fmt::format("the adapter at {} does not open its bus", place_.device),
+      return fail(Errc::bus, formatted("the adapter at {} does not open its bus", place_.device),
                   "unplug it and plug it in again");
     default: break;
   }
   return fail(
       Errc::bus,
-      fmt::format("no adapter answers at {}{}", place_.device,
-                  opening.heard_something() ? ", though something talks there" : ""),
+      formatted("no adapter answers at {}{}", place_.device,
+                opening.heard_something() ? ", though something talks there" : ""),
       "is it one with the LAWICEL protocol (slcan)? A real serial line needs the adapter's baud rate as well: "
       "slcan:/dev/ttyUSB0@500k,57600");
 }
@@ -153,10 +153,10 @@ Result<void> SlcanBus::recover(TimePoint deadline) {
 
 Result<void> SlcanBus::leave_for(std::uint32_t bitrate) {
   if (!slcan_bitrate_digit(bitrate))
-    return fail(Errc::usage, fmt::format("{} bit/s is no bitrate that such an adapter has", bitrate));
+    return fail(Errc::usage, formatted("{} bit/s is no bitrate that such an adapter has", bitrate));
   close();
   place_.bitrate = bitrate;
-  lost_ = make_error(Errc::bus, fmt::format("the adapter at {} was left", place_.device));
+  lost_ = make_error(Errc::bus, formatted("the adapter at {} was left", place_.device));
   return {};
 }
 
@@ -164,13 +164,13 @@ std::string SlcanBus::about() const {
   if (!port_) return {};
   const auto version = version_.empty() ? std::string("?") : version_;
   if (!acknowledges_ || !acknowledges_frames_)
-    return fmt::format(
+    return formatted(
         "version {}; it acknowledges no frame, so that nobody knows which were sent, and tells nothing of its controller",
         version);
   if (watch_.has_flags())
-    return fmt::format(
-        "version {}; its flags tell lost frames, warning, error-passive and errors on the wire", version);
-  return fmt::format("version {}; it acknowledges frames, and tells nothing of its controller", version);
+    return formatted("version {}; its flags tell lost frames, warning, error-passive and errors on the wire",
+                     version);
+  return formatted("version {}; it acknowledges frames, and tells nothing of its controller", version);
 }
 
 Result<std::unique_ptr<Bus>> open_slcan(std::string_view place, SlcanOpening::Mode mode) {

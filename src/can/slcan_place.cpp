@@ -1,8 +1,8 @@
 #include "can/slcan_place.hpp"
 
-#include <fmt/format.h>
 #include <optional>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "can/serial_port.hpp"
 #include "can/slcan_codec.hpp"
@@ -24,19 +24,19 @@ std::optional<std::uint32_t> slcan_bitrate(std::string_view text) {
 }
 
 tl::unexpected<Error> no_slcan_place(std::string_view text, std::string_view why) {
-  return fail(Errc::usage, fmt::format("slcan:{}: {}", text, why),
-              fmt::format("write slcan:/dev/ttyACM0@500k: the port, and a bitrate of {}; where the port is a "
-                          "real serial line, its baud rate behind: slcan:/dev/ttyUSB0@500k,57600",
-                          slcan_bitrates_text()));
+  return fail(Errc::usage, formatted("slcan:{}: {}", text, why),
+              formatted("write slcan:/dev/ttyACM0@500k: the port, and a bitrate of {}; where the port is a "
+                        "real serial line, its baud rate behind: slcan:/dev/ttyUSB0@500k,57600",
+                        slcan_bitrates_text()));
 }
 
 }  // namespace
 
 std::string slcan_url(const SlcanPlace& place) {
-  const auto rate = place.bitrate >= 1'000'000 ? fmt::format("{}M", place.bitrate / 1'000'000)
-                                               : fmt::format("{}k", place.bitrate / 1'000);
-  auto out = fmt::format("slcan:{}@{}", place.device, rate);
-  if (place.baud != SlcanPlace().baud) out += fmt::format(",{}", place.baud);
+  const auto rate = place.bitrate >= 1'000'000 ? formatted("{}M", place.bitrate / 1'000'000)
+                                               : formatted("{}k", place.bitrate / 1'000);
+  auto out = formatted("slcan:{}@{}", place.device, rate);
+  if (place.baud != SlcanPlace().baud) out += formatted(",{}", place.baud);
   return out;
 }
 
@@ -56,13 +56,12 @@ Result<SlcanPlace> parse_slcan_place(std::string_view text) {
   const auto bitrate = slcan_bitrate(rates.substr(0, comma));
   if (!bitrate)
     return no_slcan_place(text,
-                          fmt::format("'{}' is no bitrate that such an adapter has", rates.substr(0, comma)));
+                          formatted("'{}' is no bitrate that such an adapter has", rates.substr(0, comma)));
   out.bitrate = *bitrate;
   if (comma == std::string_view::npos) return out;
   const auto baud = parse_baud(rates.substr(comma + 1));
   if (!baud)
-    return no_slcan_place(text,
-                          fmt::format("'{}' is no baud rate of a serial port", rates.substr(comma + 1)));
+    return no_slcan_place(text, formatted("'{}' is no baud rate of a serial port", rates.substr(comma + 1)));
   out.baud = *baud;
   return out;
 }

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "can/descriptor.hpp"
 #include "can/socketcan.hpp"
 
@@ -17,7 +18,7 @@ bool needs_no_bitrate(std::string_view name) {
 std::string missing_hint() {
   const auto present = can_interfaces();
   const auto here = present.empty() ? std::string("this machine has no CAN interface")
-                                    : fmt::format("CAN interfaces: {}", fmt::join(present, ", "));
+                                    : formatted("CAN interfaces: {}", fmt::join(present, ", "));
   return here +
          "; for a USB adapter: plug it in, then `bus up can0 --bitrate 500k`, with the bitrate of the drives; for a virtual bus: `sudo ip link add dev vcan0 type vcan && sudo ip link "
          "set vcan0 up`";
@@ -26,31 +27,31 @@ std::string missing_hint() {
 }  // namespace
 
 std::string up_command(const std::string& name) {
-  if (needs_no_bitrate(name)) return fmt::format("`bus up {}`", name);
-  return fmt::format("`bus up {} --bitrate 500k`, with the bitrate of the drives", name);
+  if (needs_no_bitrate(name)) return formatted("`bus up {}`", name);
+  return formatted("`bus up {} --bitrate 500k`, with the bitrate of the drives", name);
 }
 
 tl::unexpected<Error> interface_no_name(const std::string& name) {
-  return fail(Errc::usage, fmt::format("'{}' is not an interface name", name),
+  return fail(Errc::usage, formatted("'{}' is not an interface name", name),
               "an interface has 1 to 15 characters, such as can0; `ip link` lists them");
 }
 
 tl::unexpected<Error> interface_missing(const std::string& name) {
-  return fail(Errc::bus, fmt::format("there is no interface {}", name), missing_hint());
+  return fail(Errc::bus, formatted("there is no interface {}", name), missing_hint());
 }
 
 tl::unexpected<Error> interface_is_no_can(const std::string& name) {
-  return fail(Errc::bus, fmt::format("{} is not a CAN interface", name), missing_hint());
+  return fail(Errc::bus, formatted("{} is not a CAN interface", name), missing_hint());
 }
 
 tl::unexpected<Error> interface_down(const std::string& name) {
-  return fail(Errc::bus, fmt::format("{} is down", name), fmt::format("bring it up: {}", up_command(name)));
+  return fail(Errc::bus, formatted("{} is down", name), formatted("bring it up: {}", up_command(name)));
 }
 
 tl::unexpected<Error> interface_bus_off(const std::string& name) {
   return fail(
-      Errc::bus, fmt::format("{} is off the bus after too many errors (bus-off)", name),
-      fmt::format(
+      Errc::bus, formatted("{} is off the bus after too many errors (bus-off)", name),
+      formatted(
           "check the bitrate, the cable and the two 120 ohm resistors; then `bus up {}`, which takes it down and up "
           "again",
           name));
@@ -59,26 +60,26 @@ tl::unexpected<Error> interface_bus_off(const std::string& name) {
 tl::unexpected<Error> interface_lost(const std::string& name, int error) {
   const auto up = up_command(name);
   if (error == ENETDOWN)
-    return fail(Errc::bus, fmt::format("{} went down", name), fmt::format("bring it up again: {}", up));
+    return fail(Errc::bus, formatted("{} went down", name), formatted("bring it up again: {}", up));
   if (error == ENXIO || error == ENODEV)
-    return fail(Errc::bus, fmt::format("{} went down: the interface is gone", name),
-                fmt::format("was the adapter unplugged? plug it in, then {}", up));
-  return fail(Errc::bus, fmt::format("{} failed: {}", name, system_text(error)),
-              fmt::format("`bus status {}` shows its state", name));
+    return fail(Errc::bus, formatted("{} went down: the interface is gone", name),
+                formatted("was the adapter unplugged? plug it in, then {}", up));
+  return fail(Errc::bus, formatted("{} failed: {}", name, system_text(error)),
+              formatted("`bus status {}` shows its state", name));
 }
 
 tl::unexpected<Error> interface_queue_full(const std::string& name) {
   return fail(
-      Errc::bus, fmt::format("the transmit queue of {} remains full", name),
-      fmt::format(
+      Errc::bus, formatted("the transmit queue of {} remains full", name),
+      formatted(
           "nobody acknowledges its frames, or the queue is too short: is another node on the bus, and the bitrate right? "
           "`doctor {0}` looks; `bus up {0} --txqueuelen 1000` makes it longer",
           name));
 }
 
 tl::unexpected<Error> interface_cannot_open(const std::string& name, int error) {
-  return fail(Errc::bus, fmt::format("cannot open {}: {}", name, system_text(error)),
-              fmt::format("`bus status {}` shows its state", name));
+  return fail(Errc::bus, formatted("cannot open {}: {}", name, system_text(error)),
+              formatted("`bus status {}` shows its state", name));
 }
 
 }  // namespace servoctl::can

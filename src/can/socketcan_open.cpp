@@ -7,13 +7,13 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
@@ -71,7 +71,7 @@ bool configure(int fd) {
 }  // namespace
 
 std::optional<bool> socketcan_carrier(const std::string& name) {
-  const auto carrier = number_in(fmt::format("{}/{}/carrier", kNetwork, name));
+  const auto carrier = number_in(formatted("{}/{}/carrier", kNetwork, name));
   return carrier ? std::optional(*carrier != 0) : std::nullopt;
 }
 
@@ -81,7 +81,7 @@ Result<Descriptor> socketcan_socket(const std::string& name) {
   Descriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
   if (!socket && (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT))
     return fail(
-        Errc::bus, fmt::format("cannot open {}: no SocketCAN in the kernel", name),
+        Errc::bus, formatted("cannot open {}: no SocketCAN in the kernel", name),
         "load it with `sudo modprobe can-raw`, or use a bus that needs no kernel CAN: slcan:PORT@500k for an "
         "adapter that is a serial port, local:NAME between processes of this machine, or sim: for simulated "
         "drives");

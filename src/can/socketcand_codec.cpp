@@ -2,11 +2,11 @@
 
 #include <linux/can/error.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/hex.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -104,7 +104,7 @@ Element parse_element(std::string_view text) {
 
 tl::unexpected<Error> no_server_place(std::string_view text, std::string_view why) {
   return fail(
-      Errc::usage, fmt::format("socketcand:{}: {}", text, why),
+      Errc::usage, formatted("socketcand:{}: {}", text, why),
       "write socketcand://HOST/can0: the server, perhaps its port (socketcand://HOST:29536/can0), and the "
       "CAN interface that it has there");
 }
@@ -112,8 +112,8 @@ tl::unexpected<Error> no_server_place(std::string_view text, std::string_view wh
 }  // namespace
 
 std::string SocketcandPlace::server() const {
-  return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port)
-                                             : fmt::format("[{}]:{}", host, port);
+  return host.find(':') == std::string::npos ? formatted("{}:{}", host, port)
+                                             : formatted("[{}]:{}", host, port);
 }
 
 Result<SocketcandPlace> parse_socketcand_place(std::string_view text) {
@@ -126,7 +126,7 @@ Result<SocketcandPlace> parse_socketcand_place(std::string_view text) {
   out.interface_name = rest.substr(slash + 1);
   if (out.interface_name.size() > kMostName ||
       out.interface_name.find_first_of(" \t\r\n<>/") != std::string::npos)
-    return no_server_place(text, fmt::format("'{}' is no name of an interface", out.interface_name));
+    return no_server_place(text, formatted("'{}' is no name of an interface", out.interface_name));
   auto server = rest.substr(0, slash);
   const auto bracket = server.starts_with('[') ? server.find(']') : std::string_view::npos;
   const auto colon = server.find(':', bracket == std::string_view::npos ? 0 : bracket);
@@ -138,7 +138,7 @@ Result<SocketcandPlace> parse_socketcand_place(std::string_view text) {
   if (colon == std::string_view::npos) return out;
   const auto port = parse_digits(server.substr(colon + 1), 10);
   if (!port || *port == 0 || *port > 0xFFFF)
-    return no_server_place(text, fmt::format("'{}' is no port", server.substr(colon + 1)));
+    return no_server_place(text, formatted("'{}' is no port", server.substr(colon + 1)));
   out.port = static_cast<std::uint16_t>(*port);
   return out;
 }
@@ -183,8 +183,8 @@ std::optional<SocketcandElement> SocketcandReader::take() {
 std::string socketcand_send(const Frame& frame) {
   std::string out = "< send ";
   append_hex(frame.id, frame.extended ? 8 : 3, out);
-  out += fmt::format(" {}", frame.size);
-  for (const auto byte : frame.payload()) out += fmt::format(" {:x}", byte);
+  out += formatted(" {}", frame.size);
+  for (const auto byte : frame.payload()) out += formatted(" {:x}", byte);
   return out += " >";
 }
 

@@ -1,11 +1,11 @@
 #include "can/trace.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -48,8 +48,8 @@ std::optional<Duration> parse_time(std::string_view text) {
 
 std::string to_string(const LogFrame& line) {
   const auto time = line.time.count();
-  return fmt::format("({:010}.{:06}) {} {}", time / 1'000'000, time % 1'000'000, line.interface_name,
-                     to_string(line.frame));
+  return formatted("({:010}.{:06}) {} {}", time / 1'000'000, time % 1'000'000, line.interface_name,
+                   to_string(line.frame));
 }
 
 std::optional<LogFrame> parse_log_line(std::string_view line) {

@@ -1,7 +1,6 @@
 #include "can/trace_file.hpp"
 
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <poll.h>
 #include <unistd.h>
 
@@ -9,6 +8,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 
 namespace servoctl::can {
@@ -22,7 +22,7 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
 constexpr Duration kLastPatience = std::chrono::milliseconds(500);
 
 std::string left_out_words(std::size_t frames, std::string_view file) {
-  return fmt::format("{} frames are missing in the trace {}: it was not read in time", frames, file);
+  return formatted("{} frames are missing in the trace {}: it was not read in time", frames, file);
 }
 
 }  // namespace
@@ -35,9 +35,9 @@ Result<TraceFile> TraceFile::open(const std::filesystem::path& file, TraceFailed
   if (log) return TraceFile(std::move(log), file.string(), std::move(failed));
   if (errno == ENXIO)
     return fail(Errc::file,
-                fmt::format("cannot write the trace {}: nobody reads this pipe or socket", file.string()),
+                formatted("cannot write the trace {}: nobody reads this pipe or socket", file.string()),
                 "start its reader first, such as `cat` on the pipe");
-  return fail(Errc::file, fmt::format("cannot write the trace {}: {}", file.string(), system_text(errno)),
+  return fail(Errc::file, formatted("cannot write the trace {}: {}", file.string(), system_text(errno)),
               "choose an existing folder you may write to");
 }
 
@@ -113,7 +113,7 @@ void TraceFile::drop_written(std::size_t bytes) {
 void TraceFile::give_up(int error) {
   file_ = Descriptor();
   if (failed_)
-    failed_(fail(Errc::file, fmt::format("cannot write the trace {}: {}", name_, system_text(error)),
+    failed_(fail(Errc::file, formatted("cannot write the trace {}: {}", name_, system_text(error)),
                  "the trace ends here; the command continues without it")
                 .value());
 }

@@ -1,9 +1,9 @@
 #include "canopen/cob_id_rules.hpp"
 
-#include <fmt/format.h>
 #include <optional>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/pdo.hpp"
 
@@ -51,8 +51,8 @@ std::string cob_id_conflict(ObjectAddress object, std::uint32_t cob_id, std::uin
   const auto can_id = cob_id & kBasicMask;
   const auto owner = service_of(can_id);
   if (owner.empty() || is_its_own(service, can_id, node)) return {};
-  return fmt::format("CAN-ID 0x{:03X} belongs to {}{}", can_id, owner,
-                     owner == service ? " of another node" : "");
+  return formatted("CAN-ID 0x{:03X} belongs to {}{}", can_id, owner,
+                   owner == service ? " of another node" : "");
 }
 
 }  // namespace servoctl::canopen

@@ -1,9 +1,9 @@
 #include "canopen/duplicate_watch.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/sdo_frame.hpp"
 
@@ -57,9 +57,9 @@ bool is_constant(ObjectAddress object) {
 std::string content(const std::array<std::uint8_t, 8>& data) {
   const auto number = static_cast<std::uint32_t>(data[4]) | static_cast<std::uint32_t>(data[5]) << 8U |
                       static_cast<std::uint32_t>(data[6]) << 16U | static_cast<std::uint32_t>(data[7]) << 24U;
-  if (data[0] == kSdoAbortCommand) return fmt::format("abort 0x{:08X}", number);
-  if ((data[0] & 0x02U) == 0) return fmt::format("a text of {} bytes", number);
-  return fmt::format("0x{:08X}", number);
+  if (data[0] == kSdoAbortCommand) return formatted("abort 0x{:08X}", number);
+  if ((data[0] & 0x02U) == 0) return formatted("a text of {} bytes", number);
+  return formatted("0x{:08X}", number);
 }
 
 bool is_sdo(const can::Frame& frame, std::uint32_t base) {
@@ -153,7 +153,7 @@ void DuplicateWatch::on_surplus(std::uint8_t id, const can::Frame& frame, TimePo
   const auto twice = std::count_if(node.answered.begin(), node.answered.end(),
                                    [](const Answered& answered) { return answered.twice; });
   if (twice >= kProof)
-    notice(id, fmt::format("{} of its last {} SDO responses came twice", twice, node.answered.size()), now);
+    notice(id, formatted("{} of its last {} SDO responses came twice", twice, node.answered.size()), now);
 }
 
 void DuplicateWatch::check_constant(std::uint8_t id, const can::Frame& frame, TimePoint now) {
@@ -172,10 +172,9 @@ void DuplicateWatch::check_constant(std::uint8_t id, const can::Frame& frame, Ti
   std::copy(frame.data.begin(), frame.data.begin() + 8, data.begin());
   // An abort tells of the moment, too: a drive that is busy may refuse what it gives at another time.
   if (data == known->data || is_abort(frame) || known->data[0] == kSdoAbortCommand) return;
-  notice(
-      id,
-      fmt::format("{} was answered by {} and by {}", to_string(object), content(known->data), content(data)),
-      now);
+  notice(id,
+         formatted("{} was answered by {} and by {}", to_string(object), content(known->data), content(data)),
+         now);
 }
 
 void DuplicateWatch::on_reset(const can::Frame& frame) {
@@ -193,8 +192,8 @@ void DuplicateWatch::on_boot_up(std::uint8_t id, TimePoint now) {
   const auto gap = node.boot ? now - *node.boot : Duration::max();
   if (!explained && gap < kBootWindow && gap > kDoubledFrame)
     notice(id,
-           fmt::format("two boot-ups within {} ms, unless one node keeps restarting",
-                       std::chrono::duration_cast<std::chrono::milliseconds>(gap).count()),
+           formatted("two boot-ups within {} ms, unless one node keeps restarting",
+                     std::chrono::duration_cast<std::chrono::milliseconds>(gap).count()),
            now);
   node = Node{.open = {},
               .answered = {},

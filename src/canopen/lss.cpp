@@ -1,12 +1,12 @@
 #include "canopen/lss.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <iterator>
 #include <utility>
 
 #include "base/bytes.hpp"
+#include "base/format.hpp"
 
 namespace servoctl::canopen {
 namespace {
@@ -30,8 +30,8 @@ LssService following(LssService first, int steps) {
 }  // namespace
 
 std::string to_string(const LssAddress& address) {
-  return fmt::format("vendor 0x{:08X}, product 0x{:08X}, revision 0x{:08X}, serial {}", address.vendor,
-                     address.product, address.revision, address.serial);
+  return formatted("vendor 0x{:08X}, product 0x{:08X}, revision 0x{:08X}, serial {}", address.vendor,
+                   address.product, address.revision, address.serial);
 }
 
 LssRequest lss_switch_all(LssState state) {
@@ -103,13 +103,13 @@ std::optional<LssAnswer> parse_lss_answer(const can::Frame& frame) {
 }
 
 std::string lss_error_text(const LssAnswer& answer) {
-  if (answer.error == 0xFF) return fmt::format("an error of its maker's own, {}", answer.specific);
+  if (answer.error == 0xFF) return formatted("an error of its maker's own, {}", answer.specific);
   if (answer.service == LssService::set_node && answer.error == 1) return "the node-ID is out of its range";
   if (answer.service == LssService::set_bit_timing && answer.error == 1)
     return "it does not support this bitrate";
   if (answer.service == LssService::store && answer.error == 1) return "it cannot store its configuration";
   if (answer.service == LssService::store && answer.error == 2) return "it could not write to its memory";
-  return fmt::format("error {}, which CiA 305 does not define", answer.error);
+  return formatted("error {}, which CiA 305 does not define", answer.error);
 }
 
 }  // namespace servoctl::canopen

@@ -1,7 +1,6 @@
 #include "canopen/node_epoch.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/pdo_index.hpp"
 #include "canopen/nmt.hpp"
 #include "canopen/sdo_frame.hpp"
@@ -21,7 +20,7 @@ std::string reason_between(const NodeEpoch& before, const NodeEpoch& now) {
   if (before.boots != now.boots) return "has restarted";
   if (before.resets != now.resets) return "was reset (NMT)";
   if (before.losses != now.losses) return "was lost";
-  return fmt::format("has another PDO setting: object {} was written", to_string(now.written));
+  return formatted("has another PDO setting: object {} was written", to_string(now.written));
 }
 
 void NodeEpochs::on_frame(const can::Frame& frame) {

@@ -1,7 +1,6 @@
 #include "canopen/pdo.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
@@ -42,7 +41,7 @@ std::uint16_t Pdo::mapping_index() const { return index_of({direction, number, t
 std::size_t Pdo::bits() const { return bits_of(entries); }
 
 std::string name(PdoDirection direction, std::uint16_t number) {
-  return fmt::format("{}PDO{}", direction == PdoDirection::receive ? 'R' : 'T', number);
+  return formatted("{}PDO{}", direction == PdoDirection::receive ? 'R' : 'T', number);
 }
 
 std::optional<Pdo> parse_pdo_name(std::string_view text) {

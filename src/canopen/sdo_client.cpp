@@ -1,9 +1,9 @@
 #include "canopen/sdo_client.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_frame.hpp"
@@ -97,7 +97,7 @@ void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
   if (frame.size != 8) {
     if (state_ != State::idle)
       abort(sdo_abort::kCommand, Errc::protocol,
-            fmt::format("its answer has {} bytes instead of 8", frame.size));
+            formatted("its answer has {} bytes instead of 8", frame.size));
     return;
   }
   const bool again = std::exchange(last_answer_, frame) == frame;
@@ -136,9 +136,8 @@ void SdoClient::on_abort(const can::Frame& frame, TimePoint now) {
   if (state_ == State::block_upload_initiate && may_fall_back) return begin_upload(now);
   if (state_ == State::block_download_initiate && may_fall_back) return begin_download(false, now);
   const bool reads = state_ == State::upload_initiate || state_ == State::block_upload_initiate;
-  auto refused =
-      error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
-            reads ? sdo_abort_hint(code) : sdo_abort_hint(code, object_));
+  auto refused = error(Errc::sdo_abort, formatted("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
+                       reads ? sdo_abort_hint(code) : sdo_abort_hint(code, object_));
   refused.abort_code = code;
   finish(fail(std::move(refused)));
 }
@@ -151,7 +150,7 @@ void SdoClient::end_by_boot_up() {
 void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   if (command_of(frame) != 0x40) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered a read with command 0x{:02X}", frame.data[0]));
+          formatted("it answered a read with command 0x{:02X}", frame.data[0]));
     return;
   }
   const bool expedited = (frame.data[0] & 0x02U) != 0;
@@ -170,7 +169,7 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   if (size_indicated) announced_ = sdo_data(frame);
   if (announced_ > kMaxSdoUpload) {
     abort(sdo_abort::kOutOfMemory, Errc::protocol,
-          fmt::format("it announces {} bytes for this object", *announced_));
+          formatted("it announces {} bytes for this object", *announced_));
     return;
   }
   if (announced_) data_.reserve(*announced_);
@@ -182,7 +181,7 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
     return;  // The first answer, twice.
   if (command_of(frame) != 0x00) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered a segment request with command 0x{:02X}", frame.data[0]));
+          formatted("it answered a segment request with command 0x{:02X}", frame.data[0]));
     return;
   }
   if ((frame.data[0] & kToggleBit) != toggle_) {
@@ -195,7 +194,7 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
   if (data_.size() > announced_.value_or(kMaxSdoUpload) ||
       (last && announced_ && data_.size() < *announced_)) {
     abort(sdo_abort::kLength, Errc::protocol,
-          fmt::format("it announced {} bytes and sent {}", announced_.value_or(kMaxSdoUpload), data_.size()));
+          formatted("it announced {} bytes and sent {}", announced_.value_or(kMaxSdoUpload), data_.size()));
     return;
   }
   if (last) return finish(std::exchange(data_, {}));
@@ -206,7 +205,7 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
 void SdoClient::on_download_initiate(const can::Frame& frame, TimePoint now) {
   if (command_of(frame) != 0x60) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered a write with command 0x{:02X}", frame.data[0]));
+          formatted("it answered a write with command 0x{:02X}", frame.data[0]));
     return;
   }
   if (offset_ == data_.size() && !data_.empty()) return finish(Bytes{});
@@ -218,7 +217,7 @@ void SdoClient::on_download_segment(const can::Frame& frame, TimePoint now) {
     return;  // The first answer, twice.
   if (command_of(frame) != 0x20) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered a segment with command 0x{:02X}", frame.data[0]));
+          formatted("it answered a segment with command 0x{:02X}", frame.data[0]));
     return;
   }
   if ((frame.data[0] & kToggleBit) != toggle_) {

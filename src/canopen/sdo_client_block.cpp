@@ -1,7 +1,7 @@
 // The block transfers of the SDO client (CiA 301, 7.2.4.2.9 to 7.2.4.2.16 and 7.2.4.3.8 to 7.2.4.3.16).
-#include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_client.hpp"
@@ -30,14 +30,14 @@ void SdoClient::on_block_upload_initiate(const can::Frame& frame, TimePoint now)
   if ((command & 0xE0U) == 0x40 && transfer_ != Transfer::block) return on_upload_initiate(frame, now);
   if ((command & 0xE1U) != 0xC0) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered the block transfer request with command 0x{:02X}", command));
+          formatted("it answered the block transfer request with command 0x{:02X}", command));
     return;
   }
   crc_ = (command & kCrcSupported) != 0;
   if ((command & 0x02U) != 0) announced_ = sdo_data(frame);
   if (announced_ > kMaxSdoUpload) {
     abort(sdo_abort::kOutOfMemory, Errc::protocol,
-          fmt::format("it announces {} bytes for this object", *announced_));
+          formatted("it announces {} bytes for this object", *announced_));
     return;
   }
   if (announced_ == 0 && transfer_ != Transfer::block) return leave_block_upload(now);
@@ -57,7 +57,7 @@ void SdoClient::on_block_upload_data(const can::Frame& frame, TimePoint now) {
   const bool ended = receiver_.on_segment(frame.data);
   if (receiver_.received() > announced_.value_or(kMaxSdoUpload) + 7) {
     abort(sdo_abort::kLength, Errc::protocol,
-          fmt::format("it sends more than the {} bytes it announced", announced_.value_or(kMaxSdoUpload)));
+          formatted("it sends more than the {} bytes it announced", announced_.value_or(kMaxSdoUpload)));
     return;
   }
   // Half of the time, so that a lost end of a block can be asked for before the other side gives up.
@@ -78,7 +78,7 @@ void SdoClient::on_block_upload_end(const can::Frame& frame, TimePoint) {
   if (receiver_.repeats(frame.data)) return;
   if ((frame.data[0] & 0xE3U) != 0xC1) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it ended a block transfer with command 0x{:02X}", frame.data[0]));
+          formatted("it ended a block transfer with command 0x{:02X}", frame.data[0]));
     return;
   }
   auto data = receiver_.take(frame.data[0] >> 2U & 0x07U);
@@ -90,7 +90,7 @@ void SdoClient::on_block_upload_end(const can::Frame& frame, TimePoint) {
   }
   if (announced_ && data.size() != *announced_) {
     abort(sdo_abort::kLength, Errc::protocol,
-          fmt::format("it announced {} bytes and sent {}", *announced_, data.size()));
+          formatted("it announced {} bytes and sent {}", *announced_, data.size()));
     return;
   }
   finish(std::move(data));
@@ -108,13 +108,12 @@ void SdoClient::begin_block_download(TimePoint now) {
 void SdoClient::on_block_download_initiate(const can::Frame& frame, TimePoint) {
   if (block_command(frame) != 0xA0) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered the block transfer request with command 0x{:02X}", frame.data[0]));
+          formatted("it answered the block transfer request with command 0x{:02X}", frame.data[0]));
     return;
   }
   const auto block_size = frame.data[4];
   if (block_size == 0 || block_size > kMaxBlockSize) {
-    abort(sdo_abort::kBlockSize, Errc::protocol,
-          fmt::format("it asks for blocks of {} segments", block_size));
+    abort(sdo_abort::kBlockSize, Errc::protocol, formatted("it asks for blocks of {} segments", block_size));
     return;
   }
   crc_ = (frame.data[0] & kCrcSupported) != 0;
@@ -127,7 +126,7 @@ void SdoClient::on_block_download_data(const can::Frame& frame, TimePoint now) {
   if (block_command(frame) == 0xA0 && sdo_object(frame) == object_) return;  // The first answer, twice.
   if (block_command(frame) != 0xA2) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered a block with command 0x{:02X}", frame.data[0]));
+          formatted("it answered a block with command 0x{:02X}", frame.data[0]));
     return;
   }
   const bool repeated = acknowledged_ == frame && frame.data[1] != 0;
@@ -136,7 +135,7 @@ void SdoClient::on_block_download_data(const can::Frame& frame, TimePoint now) {
   if (code != 0 && repeated) return;
   if (code != 0) {
     abort(code, Errc::protocol,
-          fmt::format("it acknowledged segment {} and asked for blocks of {}", frame.data[1], frame.data[2]));
+          formatted("it acknowledged segment {} and asked for blocks of {}", frame.data[1], frame.data[2]));
     return;
   }
   if (!sender_.is_done()) {
@@ -156,7 +155,7 @@ void SdoClient::on_block_download_end(const can::Frame& frame, TimePoint) {
   if (block_command(frame) == 0xA2) return;  // The last acknowledge, twice.
   if (block_command(frame) != 0xA1) {
     abort(sdo_abort::kCommand, Errc::protocol,
-          fmt::format("it answered the end of a block transfer with command 0x{:02X}", frame.data[0]));
+          formatted("it answered the end of a block transfer with command 0x{:02X}", frame.data[0]));
     return;
   }
   finish(Bytes{});

@@ -1,7 +1,7 @@
 // Answers of the SDO client that come late, instead of the one that is waited for, or not at all.
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_client.hpp"
@@ -109,8 +109,8 @@ void SdoClient::on_silence() {
   if (silence.hint.empty() && asked_for_block)
     silence.hint = "if the node answers `read 0x1000`, try --transfer segmented";
   abort(sdo_abort::kTimeout, silence.code,
-        fmt::format("no answer{} within {} ms{}", asked_for_block ? " to the block transfer request" : "",
-                    waited, silence.heard),
+        formatted("no answer{} within {} ms{}", asked_for_block ? " to the block transfer request" : "",
+                  waited, silence.heard),
         std::move(silence.hint));
 }
 

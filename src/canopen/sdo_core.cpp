@@ -1,9 +1,9 @@
 #include "canopen/sdo_core.hpp"
 
-#include <fmt/format.h>
 #include <functional>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "canopen/sdo_frame.hpp"
 
 namespace servoctl::canopen {
@@ -95,10 +95,10 @@ bool SdoCore::is_shadowed(ObjectAddress object) const {
 SdoCore::Silence SdoCore::silence() const {
   if (heard_) {
     const auto what = sdo_answer_kind(heard_->command) == SdoAnswerKind::abort
-                          ? fmt::format("; it aborted with 0x{:08X} and named object {}", heard_->code,
-                                        to_string(heard_->object))
-                          : fmt::format("; it answered with command 0x{:02X} for object {}", heard_->command,
-                                        to_string(heard_->object));
+                          ? formatted("; it aborted with 0x{:08X} and named object {}", heard_->code,
+                                      to_string(heard_->object))
+                          : formatted("; it answered with command 0x{:02X} for object {}", heard_->command,
+                                      to_string(heard_->object));
     return {Errc::protocol, what,
             "the drive answers, but not to this request: does its firmware deviate from CiA 301, or does "
             "another master use its SDO channel?"};

@@ -1,9 +1,9 @@
 #include "cli/axis_lines.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
 
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -37,17 +37,17 @@ Result<void> check_counts(const Cabinet& cabinet, const Axis& axis, const comman
   const auto typed = parse_integer(arguments.text(option));
   if (!in_file || !typed || (typed->magnitude == *in_file && !typed->negative)) return {};
   return fail(Errc::usage,
-              fmt::format("{} has {} = {} by {}, not {}", axis.name, key, *in_file,
-                          cabinet.file.filename().string(), arguments.text(option)),
-              fmt::format("leave {} out, or change the file", option));
+              formatted("{} has {} = {} by {}, not {}", axis.name, key, *in_file,
+                        cabinet.file.filename().string(), arguments.text(option)),
+              formatted("leave {} out, or change the file", option));
 }
 
 /// How to get rid of a setting that contradicts the file.
 std::string without(Source source, std::string_view option) {
   switch (source) {
-    case Source::environment: return fmt::format("unset {}", name_of(source, option));
+    case Source::environment: return formatted("unset {}", name_of(source, option));
     case Source::set: return "choose another one at the prompt";
-    default: return fmt::format("leave {} out", option);
+    default: return formatted("leave {} out", option);
   }
 }
 
@@ -67,10 +67,10 @@ Result<void> weigh(const Named& named, const Axis& axis, Source from, std::strin
   const auto file = named.cabinet->file.filename().string();
   const auto& given = option == "--bus" ? named.settings->bus : named.settings->drive;
   if (from >= named.from && !named.way_out)
-    return fail(Errc::usage, fmt::format("{} is {} by {}, not {}", axis.name, is, file, wanted),
-                fmt::format("{}, or change the file", without(from, option)));
+    return fail(Errc::usage, formatted("{} is {} by {}, not {}", axis.name, is, file, wanted),
+                formatted("{}, or change the file", without(from, option)));
   add_once(*named.notices,
-           fmt::format("{} ({}) is not used: {} says it of each axis", name_of(from, option), given, file));
+           formatted("{} ({}) is not used: {} says it of each axis", name_of(from, option), given, file));
   return {};
 }
 
@@ -80,7 +80,7 @@ Result<void> check_given(const Named& named, const Axis& axis) {
   const auto& bus = *named.cabinet->bus(axis.bus);
   if (!settings.bus.empty() && bus_given(*named.cabinet, settings.bus) != &bus)
     if (const auto right = weigh(named, axis, settings.bus_from, "--bus",
-                                 fmt::format("on bus {} ({})", bus.name, bus.url), "on " + settings.bus);
+                                 formatted("on bus {} ({})", bus.name, bus.url), "on " + settings.bus);
         !right)
       return right;
   if (!settings.drive.empty() && settings.drive != axis.family)
@@ -147,17 +147,16 @@ Result<void> check_plain(const Cabinet& cabinet, const cabinet::Bus& bus, const 
   if (!changes) return {};
   return fail(
       Errc::usage,
-      fmt::format("which bus? '{}' changes {}, and the line names neither an axis nor a bus", command.path,
-                  command.effect_with(arguments) == command::Effect::links ? "an interface" : "a drive"),
-      fmt::format("add --bus {} ({}, by {}), or name the axes", bus.name, bus.url, cabinet.file.string()));
+      formatted("which bus? '{}' changes {}, and the line names neither an axis nor a bus", command.path,
+                command.effect_with(arguments) == command::Effect::links ? "an interface" : "a drive"),
+      formatted("add --bus {} ({}, by {}), or name the axes", bus.name, bus.url, cabinet.file.string()));
 }
 
 /// It sets bus, family and limits of lines that do not name it.
 Result<void> check_cabinet_found(const std::filesystem::path& file) {
-  return check_found_file(file,
-                          fmt::format("nothing of this cabinet file was used; if you trust it, name it: "
-                                      "--cabinet {0}, or SERVOCTL_CABINET={0}",
-                                      file.string()));
+  return check_found_file(file, formatted("nothing of this cabinet file was used; if you trust it, name it: "
+                                          "--cabinet {0}, or SERVOCTL_CABINET={0}",
+                                          file.string()));
 }
 
 }  // namespace
@@ -253,10 +252,10 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
   const bool looks = command.effect_with(arguments) <= command::Effect::reads && settings.nodes.empty();
   if (looks && !makes_file) return out;
   std::vector<std::string> names;
-  for (const auto& bus : cabinet.buses) names.push_back(fmt::format("`--bus {}`", bus.name));
+  for (const auto& bus : cabinet.buses) names.push_back(formatted("`--bus {}`", bus.name));
   return fail(Errc::usage,
-              fmt::format("which bus? {} has {}", cabinet.file.filename().string(), cabinet.buses.size()),
-              fmt::format("add {}, or name the axes", one_of(names)));
+              formatted("which bus? {} has {}", cabinet.file.filename().string(), cabinet.buses.size()),
+              formatted("add {}, or name the axes", one_of(names)));
 }
 
 std::vector<OptionOfAxis> add_axis_options(std::span<const Axis* const> axes, const command::Command& command,

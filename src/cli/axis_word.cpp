@@ -1,17 +1,17 @@
 #include "cli/axis_word.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl::cli {
 namespace {
 
 std::string axis_hint(const std::string& word, const Result<const cabinet::Cabinet*>& known) {
   if (!known)
-    return fmt::format("'{}' may be an axis, but the cabinet file cannot be used: {}", word,
-                       known.error().message);
+    return formatted("'{}' may be an axis, but the cabinet file cannot be used: {}", word,
+                     known.error().message);
   if (*known == nullptr) return "nodes are named by -n; there is no cabinet file here that names axes";
   const auto axes = (*known)->select(word);
-  return axes ? std::string() : fmt::format("{}; {}", axes.error().message, axes.error().hint);
+  return axes ? std::string() : formatted("{}; {}", axes.error().message, axes.error().hint);
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ Error about_axis(Error error, const std::vector<std::string>& words, const Comma
       error.message.find("unexpected argument") == std::string::npos)
     return error;
   const auto more = axis_hint(words[after], cabinet());
-  if (!more.empty()) error.hint = fmt::format("{}; {}", more, error.hint);
+  if (!more.empty()) error.hint = formatted("{}; {}", more, error.hint);
   return error;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cli/axis_lines.hpp"
 #include "session/open_bus.hpp"
@@ -45,8 +46,8 @@ Result<Settings> settle_bus(const Cabinet& cabinet, Settings settings, std::vect
     if (known != nullptr && known->name == settings.bus && numbers) return settings;
     if (known == nullptr || cabinet.buses.size() > 1)
       add_once(notices,
-               fmt::format("{} ({}) is not used: the buses are those of {} ({})", name_of(bus_from, "--bus"),
-                           settings.bus, cabinet.file.string(), name_of(settings.cabinet_from, "--cabinet")));
+               formatted("{} ({}) is not used: the buses are those of {} ({})", name_of(bus_from, "--bus"),
+                         settings.bus, cabinet.file.string(), name_of(settings.cabinet_from, "--cabinet")));
     settings.bus.clear();
     return settings;
   }
@@ -54,12 +55,12 @@ Result<Settings> settle_bus(const Cabinet& cabinet, Settings settings, std::vect
   // At the prompt the word `bus` comes later than the file.
   if (known != nullptr || bus_from == Source::set) return settings;
   std::vector<std::string> names;
-  for (const auto& bus : cabinet.buses) names.push_back(fmt::format("{} ({})", bus.name, bus.url));
+  for (const auto& bus : cabinet.buses) names.push_back(formatted("{} ({})", bus.name, bus.url));
   return fail(
       Errc::usage,
-      fmt::format("{} has no bus {}: {} and {} contradict each other", cabinet.file.string(), settings.bus,
-                  name_of(bus_from, "--bus"), name_of(settings.cabinet_from, "--cabinet")),
-      fmt::format("its buses: {}; leave one of the two out", fmt::join(names, ", ")));
+      formatted("{} has no bus {}: {} and {} contradict each other", cabinet.file.string(), settings.bus,
+                name_of(bus_from, "--bus"), name_of(settings.cabinet_from, "--cabinet")),
+      formatted("its buses: {}; leave one of the two out", fmt::join(names, ", ")));
 }
 
 bool are_on_bus(const Cabinet& cabinet, const Settings& settings) {

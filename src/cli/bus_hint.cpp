@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cli/bus_holder.hpp"
 
@@ -8,12 +8,12 @@ namespace servoctl::cli {
 std::string bus_hint(std::span<const std::string> can, std::span<const std::string> coe) {
   std::string ring;
   if (!coe.empty())
-    ring = fmt::format("for EtherCAT drives on {}: --bus {}",
-                       coe.size() == 1 ? "the Ethernet port with a link" : "an Ethernet port with a link",
-                       one_of(coe));
+    ring = formatted("for EtherCAT drives on {}: --bus {}",
+                     coe.size() == 1 ? "the Ethernet port with a link" : "an Ethernet port with a link",
+                     one_of(coe));
   if (!can.empty())
-    return fmt::format("add --bus {} or set SERVOCTL_BUS{}{}", one_of(can), ring.empty() ? "" : "; ", ring);
-  return fmt::format(
+    return formatted("add --bus {} or set SERVOCTL_BUS{}{}", one_of(can), ring.empty() ? "" : "; ", ring);
+  return formatted(
       "this machine has no CAN interface; {}{}try `--bus sim:FAMILY@1` (`drives` lists families), or "
       "local:NAME",
       ring, ring.empty() ? "" : "; else ");

@@ -1,9 +1,9 @@
 #include "cli/bus_holder.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
@@ -39,8 +39,8 @@ std::string kind_text(session::Session& session) {
   if (session.gateway() != nullptr) return "a gateway of CiA 309-3";
   const auto bitrate = session::bitrate_of(session.url());
   if (!bitrate) return "CAN";
-  return session::link_of(session.url()) ? fmt::format("CAN, {} bit/s by the kernel", *bitrate)
-                                         : fmt::format("CAN, {} bit/s by its URL", *bitrate);
+  return session::link_of(session.url()) ? formatted("CAN, {} bit/s by the kernel", *bitrate)
+                                         : formatted("CAN, {} bit/s by its URL", *bitrate);
 }
 
 }  // namespace
@@ -107,8 +107,8 @@ bool BusHolder::has_adapter(std::string_view adapter) const {
 Result<void> BusHolder::release_adapter(std::string_view adapter) {
   if (const auto nodes = energised_on(adapter); !nodes.empty())
     return fail(Errc::refused,
-                fmt::format("{} stays open: node {} is energised over it", adapter, nodes.front()),
-                fmt::format("`disable -n {}` first", nodes.front()));
+                formatted("{} stays open: node {} is energised over it", adapter, nodes.front()),
+                formatted("`disable -n {}` first", nodes.front()));
   for (auto* session : sessions()) {
     if (!is_over(session::canonical_url(session->url()), adapter)) continue;
     stop_sync(*session);
@@ -180,19 +180,19 @@ Result<void> BusHolder::connect(const std::string& url) {
 void BusHolder::tell_opened() {
   const auto& url = session_->url();
   const auto& options = session_->options();
-  console_->detail(fmt::format(
-      "bus {} is open ({}); longest wait for an answer: {} ms, retries of a read: {}", url,
-      kind_text(*session_), std::chrono::duration_cast<std::chrono::milliseconds>(options.timeout).count(),
-      options.retries));
+  console_->detail(formatted("bus {} is open ({}); longest wait for an answer: {} ms, retries of a read: {}",
+                             url, kind_text(*session_),
+                             std::chrono::duration_cast<std::chrono::milliseconds>(options.timeout).count(),
+                             options.retries));
   if (!bus_options_.trace.empty())
-    console_->detail(fmt::format("every frame is written to {}", bus_options_.trace.string()));
+    console_->detail(formatted("every frame is written to {}", bus_options_.trace.string()));
 }
 
 /// What breaks while a line runs is told at once: a recording may go on for hours.
 void BusHolder::on_trace_failed(const Error& error) {
   trace_failure_ = error;
   if (!flushing_)
-    console_->err(fmt::format("notice: {}; {}\n", printable(error.message), printable(error.hint)));
+    console_->err(formatted("notice: {}; {}\n", printable(error.message), printable(error.hint)));
 }
 
 std::optional<Error> BusHolder::take_trace_failure() {
@@ -244,7 +244,7 @@ void BusHolder::stop_sync(session::Session& session) {
   if (!produces_sync(session)) return;
   const auto count = session.can()->sync()->rhythm.count();
   for (const auto& warning : traffic::end_sync(session).warnings) console_->err("warning: " + warning + "\n");
-  console_->note(fmt::format("notice: SYNC is no longer produced on {}, after {}\n", session.url(), count));
+  console_->note(formatted("notice: SYNC is no longer produced on {}, after {}\n", session.url(), count));
 }
 
 bool BusHolder::must_go_on() const {

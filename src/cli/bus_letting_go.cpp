@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "can/descriptor.hpp"
 #include "cli/bus_holder.hpp"
@@ -23,10 +24,10 @@ constexpr Duration kTelling = std::chrono::seconds(1);
 }  // namespace
 
 void BusHolder::lose(session::Session& session) {
-  const auto lost = make_error(Errc::bus, fmt::format("{} was lost", session.url()));
+  const auto lost = make_error(Errc::bus, formatted("{} was lost", session.url()));
   for (const auto node : session.energised().nodes()) warn(session, node, lost);
   if (produces_sync(session))
-    console_->err(fmt::format("notice: SYNC is no longer produced: {} was lost\n", session.url()));
+    console_->err(formatted("notice: SYNC is no longer produced: {} was lost\n", session.url()));
   drop(session, true);
 }
 
@@ -60,8 +61,8 @@ Result<void> BusHolder::connect_again(const std::string& url, const std::set<std
     const bool may_come = !back && (back.error().code == Errc::bus || back.error().code == Errc::interrupted);
     if (!may_come || time >= end) return back;
     if (time >= next_line) {
-      console_->note(fmt::format("notice: {}: trying again to stop node{} {}\n", back.error().message,
-                                 nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));
+      console_->note(formatted("notice: {}: trying again to stop node{} {}\n", back.error().message,
+                               nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));
       next_line += kTelling;
     }
     can::nap(kReconnectPause);

@@ -1,8 +1,8 @@
 #include "cli/family_gate.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
@@ -17,14 +17,13 @@ using session::FamilyVerdict;
 std::string forcing_hint(std::span<const std::string> fitting, std::uint8_t node, bool is_axis) {
   const std::string_view force = "--force-family continues anyway";
   if (fitting.empty())
-    return fmt::format("no family fits: check the nameplate; `info -n {}` shows its identity; {}", node,
-                       force);
+    return formatted("no family fits: check the nameplate; `info -n {}` shows its identity; {}", node, force);
   if (is_axis)
-    return fmt::format(
+    return formatted(
         "its identity fits {}: if the nameplate agrees, correct `family` in the cabinet file; {}",
         one_of(fitting), force);
-  return fmt::format("its identity fits {}: if the nameplate agrees, add -d {}; {}", one_of(fitting),
-                     fitting.front(), force);
+  return formatted("its identity fits {}: if the nameplate agrees, add -d {}; {}", one_of(fitting),
+                   fitting.front(), force);
 }
 
 }  // namespace
@@ -89,8 +88,8 @@ Result<void> FamilyGate::ask_all(std::span<const std::uint8_t> nodes, const driv
       return fail(identity.error());
     if (must_answer)
       notices_->push_back(
-          fmt::format("node {} did not answer the identity check: whether it is a {} is not verified",
-                      nodes[i], profile.family));
+          formatted("node {} did not answer the identity check: whether it is a {} is not verified", nodes[i],
+                    profile.family));
   }
   return {};
 }
@@ -111,7 +110,7 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   const bool contradicted = verdict.kind == FamilyVerdict::Kind::contradicted;
   if (contradicted && refuses && !options_.force) {
     auto error =
-        drive_error(Errc::refused, node, fmt::format("not a {}: {}", profile.family, verdict.why),
+        drive_error(Errc::refused, node, formatted("not a {}: {}", profile.family, verdict.why),
                     forcing_hint(others(identity, families), node, !options_.names.of(node).empty()));
     error.object = verdict.object;
     return fail(std::move(error));
@@ -122,8 +121,8 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   const std::string_view forced = refuses ? "; continuing because of --force-family" : "";
   notices_->push_back(
       contradicted
-          ? fmt::format("node {}: not a {}: {}{}", node, profile.family, verdict.why, forced)
-          : fmt::format("node {}: nothing proves that it is a {}: {}", node, profile.family, verdict.why));
+          ? formatted("node {}: not a {}: {}{}", node, profile.family, verdict.why, forced)
+          : formatted("node {}: nothing proves that it is a {}: {}", node, profile.family, verdict.why));
   return {};
 }
 

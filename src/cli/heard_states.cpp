@@ -1,9 +1,9 @@
 #include "cli/heard_states.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "canopen/sdo_frame.hpp"
 #include "drive/cia402.hpp"
@@ -120,7 +120,7 @@ HeardStates::State HeardStates::state(std::uint8_t node, const Family& family) {
   if (!known.emergency || !(newer || out.fault)) return out;
   out.fault = true;
   out.unsure = out.unsure && !newer;
-  out.text = fmt::format("{}EMCY 0x{:04X}", newer ? "" : out.text + ", ", known.emergency->value);
+  out.text = formatted("{}EMCY 0x{:04X}", newer ? "" : out.text + ", ", known.emergency->value);
   return out;
 }
 
@@ -130,7 +130,7 @@ void HeardStates::add_network_error(std::uint8_t node, State& out) const {
   const auto* al = ring == nullptr ? nullptr : ring->al_of(node);
   if (al == nullptr || !al->error) return;
   out.fault = true;
-  append(out.text, fmt::format("AL status code 0x{:04X}", al->code));
+  append(out.text, formatted("AL status code 0x{:04X}", al->code));
 }
 
 /// Of a value that the manual gives no alarm nobody knows what it says.
@@ -145,7 +145,7 @@ void HeardStates::add_alarm(std::uint8_t node, const Family& family, State& out)
   const auto& known = alarm->parameter->labels;
   if (std::none_of(known.begin(), known.end(), [&](const auto& one) { return one.value == word.value; }))
     return;
-  out.text = fmt::format("alarm 0x{:04X}", word.value);
+  out.text = formatted("alarm 0x{:04X}", word.value);
   out.fault = true;
   out.unsure = session_->now() - word.time > kFresh;
 }

@@ -1,10 +1,10 @@
 #include "cli/last_place.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 #include "base/printable.hpp"
 #include "base/regular_files.hpp"
@@ -55,7 +55,7 @@ bool opens_silently(Shell& shell, std::string bus) {
 std::string in_words(const LastPlace& place, bool chinese) {
   std::string out;
   const auto add = [&](std::string_view word, const std::string& name) {
-    if (!name.empty()) append(out, fmt::format("{} {}", chinese ? report::chinese_word(word) : word, name));
+    if (!name.empty()) append(out, formatted("{} {}", chinese ? report::chinese_word(word) : word, name));
   };
   // Where an axis is, and what it is, the cabinet file says.
   if (names_axes(place.nodes)) {
@@ -80,7 +80,7 @@ Result<void> check_cabinet(Shell& shell, const LastPlace& place) {
   const bool none_meant = place.cabinet.empty() && !names_axes(place.nodes);
   if (cabinet == nullptr)
     return none_meant ? Result<void>() : fail(Errc::usage, "no cabinet file is in use here");
-  if (none_meant) return fail(Errc::usage, fmt::format("{} is in use here", cabinet->file.string()));
+  if (none_meant) return fail(Errc::usage, formatted("{} is in use here", cabinet->file.string()));
   if (file_of(*cabinet) == place.cabinet) return {};
   return fail(Errc::usage, "the cabinet file is another one");
 }
@@ -185,11 +185,11 @@ void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   if (!now.cabinet.empty() && place.cabinet.empty()) return;
   const auto words = in_words(place, shell.console().chinese());
   if (const auto there = go_to(shell, place); !there)
-    return tell(shell, fmt::format("not as last time ({}): {}; `bus` and `use` say where to go", words,
-                                   there.error().message));
+    return tell(shell, formatted("not as last time ({}): {}; `bus` and `use` say where to go", words,
+                                 there.error().message));
   const bool waits = place.bus.empty() || !opens_silently(shell, place.bus);
-  tell(shell, fmt::format("as last time ({}): {}; `bus`, `use` and `drive` change it{}", place.time, words,
-                          waits ? "; the first line that needs the bus opens it" : ""));
+  tell(shell, formatted("as last time ({}): {}; `bus`, `use` and `drive` change it{}", place.time, words,
+                        waits ? "; the first line that needs the bus opens it" : ""));
 }
 
 void keep_last_place(Shell& shell, const std::filesystem::path& state_folder) {

@@ -1,9 +1,9 @@
 #include "cli/last_write.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
+#include "base/format.hpp"
 #include "cabinet/cabinet.hpp"
 #include "cli/axis_lines.hpp"
 #include "drive/quantity.hpp"
@@ -149,7 +149,7 @@ void LastWrite::look_at(const Context& context, const settings::NamedValue& name
   const auto text = why.empty() ? text_of(meaning, *before) : std::string();
   if (why.empty() && text.empty()) why = "what it held before cannot be written as a text";
   if (!why.empty()) {
-    pending_->why_not = fmt::format("{} on node {}: {}", named.name, node, why);
+    pending_->why_not = formatted("{} on node {}: {}", named.name, node, why);
     return;
   }
   pending_->values.push_back({.node = node,
@@ -189,8 +189,7 @@ void LastWrite::settle(const Context& context) {
     if (now)
       value.after = *now;
     else
-      line.why_not =
-          fmt::format("{} on node {}: what it holds now could not be read", value.name, value.node);
+      line.why_not = formatted("{} on node {}: what it holds now could not be read", value.name, value.node);
     if (now) value.after_text = text_of(meaning, *now);
     if (now) value.after_shown = readable_text(target, value.node, meaning, *now);
     changed.push_back(std::move(value));

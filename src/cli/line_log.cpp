@@ -4,12 +4,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 
 namespace servoctl::cli {
@@ -23,7 +23,7 @@ std::string time_of_day() {
   ::gmtime_r(&now.tv_sec, &utc);
   char text[32];
   const auto size = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &utc);
-  return fmt::format("{}.{:03}Z", std::string_view(text, size), now.tv_nsec / 1'000'000);
+  return formatted("{}.{:03}Z", std::string_view(text, size), now.tv_nsec / 1'000'000);
 }
 
 }  // namespace
@@ -31,14 +31,14 @@ std::string time_of_day() {
 Result<std::unique_ptr<LineLog>> LineLog::open(const std::filesystem::path& file) {
   const auto name = file.string();
   const auto refused = [&](int error) {
-    return fail(Errc::file, fmt::format("{}: {}", name, std::strerror(error)),
+    return fail(Errc::file, formatted("{}: {}", name, std::strerror(error)),
                 "name another file, or a folder that you may write to");
   };
   // A FIFO would be waited for, a device might do anything.
   struct stat kind {};
   const bool there = ::stat(name.c_str(), &kind) == 0;
   if (there && !S_ISREG(kind.st_mode))
-    return fail(Errc::file, fmt::format("{} is no regular file", name), "name a file");
+    return fail(Errc::file, formatted("{} is no regular file", name), "name a file");
   if (const auto links = check_links(file); !links) return fail(links.error());
   can::Descriptor descriptor(
       ::open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
@@ -70,13 +70,12 @@ void LineLog::end_line() {
 
 void LineLog::put(std::string_view time, std::string_view mark, std::string_view line) {
   if (!file_) return;
-  const auto record = fmt::format("{} {}{}\n", time, mark, line);
+  const auto record = formatted("{} {}{}\n", time, mark, line);
   const auto written = ::write(file_.get(), record.data(), record.size());
   if (written == static_cast<ssize_t>(record.size())) return;
   const int error = written < 0 ? errno : ENOSPC;
-  failure_ =
-      make_error(Errc::file, fmt::format("{}: {}: the log has ended here", name_, std::strerror(error)),
-                 "make room, then `log on FILE` goes on; what runs is not stopped by it");
+  failure_ = make_error(Errc::file, formatted("{}: {}: the log has ended here", name_, std::strerror(error)),
+                        "make room, then `log on FILE` goes on; what runs is not stopped by it");
   file_ = {};
 }
 

@@ -3,8 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "cli/batch/batch_command.hpp"
 #include "cli/last_write.hpp"
@@ -48,11 +47,11 @@ bool is_log(const std::string& file) {
 Result<void> may_log(Shell& shell, const std::string& file) {
   if (!show::is_replaced(file) || is_log(file)) return {};
   if (shell.defaults().read_only)
-    return fail(Errc::refused, fmt::format("{} is no log, and --read-only changes no file", file),
+    return fail(Errc::refused, formatted("{} is no log, and --read-only changes no file", file),
                 "name a file that does not exist yet");
   command::Context context;
   RunningLine line(shell, shell.defaults(), context);
-  return line.confirm(fmt::format("Add to the file {}, which is no log of servoctl?", file));
+  return line.confirm(formatted("Add to the file {}, which is no log of servoctl?", file));
 }
 
 /// `log on FILE`, `log off`, `log`; the exit code.
@@ -73,8 +72,8 @@ int log_line(Shell& shell, const std::vector<std::string>& words) {
   const auto name = console.log() == nullptr ? std::string() : console.log()->name();
   const auto told = name.empty() ? std::string("there is no log")
                     : words.size() == 2
-                        ? fmt::format("all that is typed and answered went into {}", printable(name))
-                        : fmt::format("all that is typed and answered goes into {}", printable(name));
+                        ? formatted("all that is typed and answered went into {}", printable(name))
+                        : formatted("all that is typed and answered goes into {}", printable(name));
   console.note("notice: " + told + "\n");
   if (words.size() == 2) console.set_log(nullptr);
   return 0;

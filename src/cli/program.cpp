@@ -3,13 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <exception>
 #include <span>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/standard_input.hpp"
 #include "base/version.hpp"
@@ -132,7 +132,7 @@ int run_one(Shell& shell, const std::vector<std::string>& words, StandardConsole
   }
   const int code = shell.close(outcome.code());
   if (!show_through(pager, console.as_written(text))) {
-    console.note(fmt::format("notice: {}\n", kPagerFailed));
+    console.note(formatted("notice: {}\n", kPagerFailed));
     console.out(text);
   }
   show_remarks(console, outcome);
@@ -202,7 +202,7 @@ void say(std::string_view text) noexcept {
 
 void say_bug(std::string_view what) noexcept {
   try {
-    say(fmt::format(
+    say(formatted(
         "error: servoctl failed: {}\n  hint: this is a bug; please report it with the command line\n",
         printable(what)));
   } catch (...) {
@@ -219,11 +219,11 @@ int run(const std::vector<std::string>& words, StandardConsole& console) {
   options.cancelled = interrupted;
   Shell shell(console, std::move(options));
   if (words.size() == 1 && words.front() == "--version") {
-    console.out(fmt::format("servoctl {}\n", version()));
+    console.out(formatted("servoctl {}\n", version()));
     return 0;
   }
   if (wants_state(words) && !state.why_not.empty())
-    console.note(fmt::format("notice: {}\n", printable(console.in_language(state.why_not))));
+    console.note(formatted("notice: {}\n", printable(console.in_language(state.why_not))));
   install_signal_handlers();
   try {
     return shell.close(run_lines(shell, words, console));
@@ -246,9 +246,9 @@ int run_program(const std::vector<std::string>& words) {
     // A reader that has closed the pipe has seen enough.
     if (console.write_error() == 0 || console.write_error() == EPIPE) return code;
     say(
-        fmt::format("error: cannot write the output ({}); the output is incomplete\n"
-                    "  hint: what the command did on the bus stays done\n",
-                    std::strerror(console.write_error())));
+        formatted("error: cannot write the output ({}); the output is incomplete\n"
+                  "  hint: what the command did on the bus stays done\n",
+                  std::strerror(console.write_error())));
     return code != 0 ? code : exit_code(Errc::file);
   } catch (const std::exception& e) {
     say_bug(e.what());

@@ -1,10 +1,10 @@
 #include "cli/restriction.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <span>
 #include <system_error>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/output_form.hpp"
@@ -54,17 +54,16 @@ Result<void> Restriction::check_bus(std::string_view url) const {
   const auto wanted = session::canonical_url(url);
   if (std::find(buses_.begin(), buses_.end(), wanted) != buses_.end()) return {};
   if (buses_.empty())
-    return fail(Errc::refused,
-                fmt::format("--restricted: the run was given no bus, and a line names {}", url),
+    return fail(Errc::refused, formatted("--restricted: the run was given no bus, and a line names {}", url),
                 "give the run its bus: run FILE --restricted --bus BUS");
-  return fail(Errc::refused, fmt::format("--restricted allows no other bus than {}: {}", one_of(buses_), url),
+  return fail(Errc::refused, formatted("--restricted allows no other bus than {}: {}", one_of(buses_), url),
               std::string(kWay));
 }
 
 Result<void> Restriction::check_file(const fs::path& file) const {
   if (!folder_.empty() && is_below(real_place(file), folder_)) return {};
   return fail(Errc::refused,
-              fmt::format("--restricted allows no file outside of {}: {}", folder_.string(), file.string()),
+              formatted("--restricted allows no file outside of {}: {}", folder_.string(), file.string()),
               std::string(kWay));
 }
 
@@ -76,7 +75,7 @@ Result<void> Restriction::check_family(std::string_view family) const {
 Result<void> Restriction::check_words(const command::Command& command,
                                       const command::Arguments& arguments) const {
   if (leaves_bus(command, arguments))
-    return fail(Errc::refused, fmt::format("--restricted does not allow '{}'", command.path),
+    return fail(Errc::refused, formatted("--restricted does not allow '{}'", command.path),
                 std::string(kWay));
   if (arguments.has("--cabinet"))
     return fail(Errc::refused, "--restricted allows no line to name a cabinet file",

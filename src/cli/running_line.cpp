@@ -1,7 +1,6 @@
 #include "cli/running_line.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "cli/batch/setting_lines.hpp"
 #include "cli/heard_starts.hpp"
@@ -41,7 +40,7 @@ Result<void> RunningLine::confirm(std::string_view question) {
   const auto asked = printable(settings_->names.in(in_language(question)));
   shell_->end_progress();
   if (!console.can_ask())
-    return fail(Errc::refused, fmt::format("confirmation needed: {}", shown), "add --yes to confirm");
+    return fail(Errc::refused, formatted("confirmation needed: {}", shown), "add --yes to confirm");
   const HeardStarts before(shell_->sessions());
   if (console.ask(asked)) return hold_nodes(before);
   return fail(shell_->cancelled() ? Errc::interrupted : Errc::refused, "not confirmed; nothing was changed");

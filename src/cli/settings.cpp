@@ -1,10 +1,10 @@
 #include "cli/settings.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/node_list.hpp"
@@ -49,7 +49,7 @@ void Settings::keep_for_lines() {
 std::string name_of(Source source, std::string_view option) {
   switch (source) {
     case Source::line: return std::string(option);
-    case Source::set: return fmt::format("an earlier {}", option);
+    case Source::set: return formatted("an earlier {}", option);
     case Source::environment: return "$SERVOCTL_" + upper(option.substr(2));
     case Source::folder: break;
   }
@@ -112,7 +112,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
     const auto timeout = read_duration(arguments.text("--timeout"));
     if (!timeout || *timeout == Duration::zero())
       return fail(Errc::usage,
-                  timeout ? fmt::format("--timeout: '{}' is too short", arguments.text("--timeout"))
+                  timeout ? formatted("--timeout: '{}' is too short", arguments.text("--timeout"))
                           : "--timeout: " + timeout.error().message,
                   timeout ? "write 500ms or 2s" : timeout.error().hint);
     base.timeout = *timeout;
@@ -121,7 +121,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
     const auto retries = parse_digits(arguments.text("--retries"), 10);
     if (!retries || *retries > 100)
       return fail(Errc::usage,
-                  fmt::format("--retries: '{}' is not a number from 0 to 100", arguments.text("--retries")));
+                  formatted("--retries: '{}' is not a number from 0 to 100", arguments.text("--retries")));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
   if (const auto right = check_contradictions(arguments); !right) return fail(right.error());

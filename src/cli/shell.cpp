@@ -2,11 +2,11 @@
 
 #include <unistd.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <span>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/axis_word.hpp"
@@ -45,10 +45,10 @@ void put_into_chinese(command::Context& context, const report::Names* of_family)
 /// What nobody took from the output in time.
 void tell_unread(Console& console, std::vector<std::string>& notices) {
   if (const auto left_out = console.take_left_out(); left_out > 0)
-    notices.push_back(fmt::format(
+    notices.push_back(formatted(
         "{} samples were not shown: the output was not read in time; --csv has every sample", left_out));
   if (const auto untold = console.take_untold(); untold > 0)
-    notices.push_back(fmt::format("{} messages were not shown: the output was not read in time", untold));
+    notices.push_back(formatted("{} messages were not shown: the output was not read in time", untold));
 }
 
 }  // namespace
@@ -209,8 +209,8 @@ void Shell::keep_restarts() {
   for (auto* session : bus_.sessions())
     if (auto* watch = bus_.restarts(*session))
       if (const auto kept = watch->keep(); !kept)
-        console_->note(fmt::format("notice: what waits for a restart is not remembered: {}\n",
-                                   printable(kept.error().message)));
+        console_->note(formatted("notice: what waits for a restart is not remembered: {}\n",
+                                 printable(kept.error().message)));
 }
 
 Outcome Shell::finish(Run& run, const Result<Value>& result) {

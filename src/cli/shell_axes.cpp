@@ -1,10 +1,10 @@
 // Lines that name axes of a cabinet: which buses and families they concern, and one outcome of all.
-#include <fmt/format.h>
 #include <algorithm>
 #include <list>
 #include <utility>
 #include <variant>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cabinet/station.hpp"
 #include "cli/shell.hpp"
@@ -50,7 +50,7 @@ Result<void> check_wires(const command::Command& command, const std::vector<Line
   }
   if (left_out.empty() || rest.empty()) return {};
   return fail(Errc::usage,
-              fmt::format("'{}' needs CAN, and {} is not on CAN: nothing was done", command.path, left_out),
+              formatted("'{}' needs CAN, and {} is not on CAN: nothing was done", command.path, left_out),
               "name the others: -n " + rest);
 }
 
@@ -81,8 +81,8 @@ struct Shell::PartRun {
   /// Who did not type an option finds it where it was said.
   void name_file(Error& error) const {
     for (const auto& [option, key] : from_file)
-      if (error.hint.find(fmt::format("{} ", option)) != std::string::npos)
-        error.hint += fmt::format("; the cabinet file says it: `{}`", key);
+      if (error.hint.find(formatted("{} ", option)) != std::string::npos)
+        error.hint += formatted("; the cabinet file says it: `{}`", key);
   }
 
   command::Arguments arguments;

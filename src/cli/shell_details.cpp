@@ -2,10 +2,10 @@
 // family that are taken and why, and what becomes of each transfer and each command for the state of a node.
 #include <unistd.h>
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "cli/shell.hpp"
 #include "cli/terminal/signals.hpp"
@@ -28,13 +28,13 @@ std::string value_text(const show::Reading& reading, const Bytes& bytes, bool ch
   const auto decoded = show::decode_value(reading, bytes);
   const auto& words = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
   const auto* label = std::get_if<std::string>(&words.data());
-  return label == nullptr ? decoded.text : fmt::format("{} {}", decoded.text, *label);
+  return label == nullptr ? decoded.text : formatted("{} {}", decoded.text, *label);
 }
 
 /// The message of an error without the place, which stands before it already.
 std::string_view message_at(const session::Exchange& one) {
   const std::string_view message = one.result.error().message;
-  const auto place = fmt::format("node {}, object {}: ", one.node, to_string(one.object));
+  const auto place = formatted("node {}, object {}: ", one.node, to_string(one.object));
   return message.starts_with(place) ? message.substr(place.size()) : message;
 }
 
@@ -44,25 +44,25 @@ std::string exchange_text(const session::Exchange& one, const drive::Profile* pr
   const auto name = chinese ? target.label_zh() : target.label();
   const auto object =
       name.empty() ? to_string(one.object)
-                   : fmt::format(fmt::runtime(chinese ? "{}（{}）" : "{} ({})"), to_string(one.object), name);
+                   : formatted(fmt::runtime(chinese ? "{}（{}）" : "{} ({})"), to_string(one.object), name);
   const double time = std::chrono::duration<double, std::milli>(one.ended - one.begun).count();
   if (one.written != nullptr) {
     const auto value = value_text(reading, *one.written, chinese);
     const auto bytes = bytes_text(*one.written);
-    return one.result ? fmt::format("node {}, object {}: written in {:.1f} ms: {} (bytes: {})", one.node,
-                                    object, time, value, bytes)
-                      : fmt::format("node {}, object {}: write of {} (bytes: {}) failed after {:.1f} ms: {}",
-                                    one.node, object, value, bytes, time, message_at(one));
+    return one.result ? formatted("node {}, object {}: written in {:.1f} ms: {} (bytes: {})", one.node,
+                                  object, time, value, bytes)
+                      : formatted("node {}, object {}: write of {} (bytes: {}) failed after {:.1f} ms: {}",
+                                  one.node, object, value, bytes, time, message_at(one));
   }
   if (!one.result)
-    return fmt::format("node {}, object {}: read failed after {:.1f} ms, tries: {}: {}", one.node, object,
-                       time, one.tries, message_at(one));
+    return formatted("node {}, object {}: read failed after {:.1f} ms, tries: {}: {}", one.node, object, time,
+                     one.tries, message_at(one));
   const auto value = value_text(reading, *one.result, chinese);
   const auto bytes = bytes_text(*one.result);
-  return one.tries == 1 ? fmt::format("node {}, object {}: read in {:.1f} ms: {} (bytes: {})", one.node,
-                                      object, time, value, bytes)
-                        : fmt::format("node {}, object {}: read in {:.1f} ms, tries: {}: {} (bytes: {})",
-                                      one.node, object, time, one.tries, value, bytes);
+  return one.tries == 1 ? formatted("node {}, object {}: read in {:.1f} ms: {} (bytes: {})", one.node, object,
+                                    time, value, bytes)
+                        : formatted("node {}, object {}: read in {:.1f} ms, tries: {}: {} (bytes: {})",
+                                    one.node, object, time, one.tries, value, bytes);
 }
 
 }  // namespace
@@ -112,8 +112,8 @@ void Shell::tell_exchange(const session::Exchange& exchange) {
 void Shell::tell_order(const session::Session& session, std::uint8_t node, std::string_view order) {
   const auto turn = take_turn();
   progress_.end();
-  const auto text = console_->in_language(node == 0 ? fmt::format("sent to all nodes: {}", order)
-                                                    : fmt::format("sent to node {}: {}", node, order));
+  const auto text = console_->in_language(node == 0 ? formatted("sent to all nodes: {}", order)
+                                                    : formatted("sent to node {}: {}", node, order));
   console_->detail(printable(bus_.names(session).in(text)));
 }
 
@@ -133,32 +133,31 @@ void Shell::tell_place(const Run& run) {
   const auto& settings = run.settings;
   const auto bus_by = settings.of_cabinet ? "the cabinet file" : name_of(settings.bus_from, "--bus");
   console_->detail(settings.nodes.empty()
-                       ? fmt::format("bus {}: named by {}", printable(settings.bus), bus_by)
-                       : fmt::format("bus {}: named by {}; nodes {}: named by {}", printable(settings.bus),
-                                     bus_by, printable(settings.nodes),
-                                     name_of(settings.nodes_from, "--node")));
+                       ? formatted("bus {}: named by {}", printable(settings.bus), bus_by)
+                       : formatted("bus {}: named by {}; nodes {}: named by {}", printable(settings.bus),
+                                   bus_by, printable(settings.nodes),
+                                   name_of(settings.nodes_from, "--node")));
 }
 
 void Shell::tell_family(const Run& run) {
   const auto& settings = run.settings;
-  const auto why = run.family_guessed ? std::string("the identity of the drive fits it, a guess")
-                   : run.family_found ? "as it was said of this drive before"
-                   : settings.of_cabinet
-                       ? "that of the axis in the cabinet file"
-                       : fmt::format("named by {}", name_of(settings.drive_from, "--drive"));
+  const auto why = run.family_guessed    ? std::string("the identity of the drive fits it, a guess")
+                   : run.family_found    ? "as it was said of this drive before"
+                   : settings.of_cabinet ? "that of the axis in the cabinet file"
+                                         : formatted("named by {}", name_of(settings.drive_from, "--drive"));
   const auto& profile = *run.context.profile;
   if (profile.data_sheet.empty())
     return console_->detail(
-        fmt::format("family {}: objects as the drive describes them", printable(profile.family)));
-  console_->detail(fmt::format("family {}: {}; objects from {}", printable(profile.family), why,
-                               printable(profile.data_sheet.string())));
+        formatted("family {}: objects as the drive describes them", printable(profile.family)));
+  console_->detail(formatted("family {}: {}; objects from {}", printable(profile.family), why,
+                             printable(profile.data_sheet.string())));
 }
 
 Result<const cabinet::Cabinet*> Shell::cabinet(const Settings& settings) {
   auto found = cabinet_.get(settings);
   if (found && *found != nullptr && console_->is_verbose() && !std::exchange(cabinet_told_, true))
-    console_->detail(fmt::format("cabinet file {}, named by {}, axes: {}", printable((*found)->file.string()),
-                                 name_of(settings.cabinet_from, "--cabinet"), (*found)->axes.size()));
+    console_->detail(formatted("cabinet file {}, named by {}, axes: {}", printable((*found)->file.string()),
+                               name_of(settings.cabinet_from, "--cabinet"), (*found)->axes.size()));
   return found;
 }
 

@@ -1,7 +1,7 @@
 // Where the dictionary of a line comes from: a family, a file, or the drive itself.
-#include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cli/shell.hpp"
 #include "drive/shared_profile.hpp"
@@ -58,8 +58,7 @@ Result<void> Shell::ask_drive(Run& run) {
   const auto opened = open(run.settings);
   if (!opened) return fail(opened.error());
   run.context.session = *opened;
-  const auto key =
-      fmt::format("{} {} {} {}", kOnline, (*opened)->url(), node, (*opened)->watch().boots(node));
+  const auto key = formatted("{} {} {} {}", kOnline, (*opened)->url(), node, (*opened)->watch().boots(node));
   if (const auto known = profiles_.find(key); known != profiles_.end()) {
     run.context.profile = known->second.get();
     return {};
@@ -68,12 +67,12 @@ Result<void> Shell::ask_drive(Run& run) {
   if (!asked) return fail(asked.error());
   auto& place = profiles_[key];
   place = std::make_shared<const drive::Profile>(drive::profile_of_sheet(
-      std::move(asked->sheet), fmt::format("{}, node {}", kOnline, node), options_.drive_folders));
+      std::move(asked->sheet), formatted("{}, node {}", kOnline, node), options_.drive_folders));
   run.context.profile = place.get();
   if (!asked->left_out.empty())
     run.context.notices.push_back(
-        fmt::format("node {} lists {} objects or entries that it does not describe; the first: {}", node,
-                    asked->left_out.size(), asked->left_out.front()));
+        formatted("node {} lists {} objects or entries that it does not describe; the first: {}", node,
+                  asked->left_out.size(), asked->left_out.front()));
   return {};
 }
 
@@ -93,11 +92,11 @@ Result<const drive::Profile*> Shell::device_of_node(Run& run, const Error& why) 
   const auto product = number(2);
   if (!product) return fail(why);
   const auto revision = number(3);
-  for (const auto& device : {fmt::format("0x{:08X}:0x{:08X}", *product, revision.value_or(0)),
-                             fmt::format("0x{:08X}", *product)}) {
-    auto found = profile(fmt::format("{}#{}", sheet.path, device));
+  for (const auto& device :
+       {formatted("0x{:08X}:0x{:08X}", *product, revision.value_or(0)), formatted("0x{:08X}", *product)}) {
+    auto found = profile(formatted("{}#{}", sheet.path, device));
     if (!found) continue;
-    run.context.notices.push_back(fmt::format("node {} is {}#{} by its identity", node, sheet.path, device));
+    run.context.notices.push_back(formatted("node {} is {}#{} by its identity", node, sheet.path, device));
     return found;
   }
   return fail(why);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cli/shell.hpp"
 #include "session/identify.hpp"
@@ -36,7 +37,7 @@ std::vector<std::string> suggested(Session& session, Identity identity,
 }
 
 tl::unexpected<Error> needs_family(const command::Command& command, std::string hint) {
-  return fail(Errc::usage, fmt::format("'{}' needs the drive family", command.path), std::move(hint));
+  return fail(Errc::usage, formatted("'{}' needs the drive family", command.path), std::move(hint));
 }
 
 /// The families of the nodes of a line, in the order they come.
@@ -51,21 +52,21 @@ void add_to(Cast& cast, const std::string& family, std::uint8_t node) {
 tl::unexpected<Error> several_families(const Cast& cast) {
   std::string lines;
   for (const auto& [family, nodes] : cast)
-    append(lines, fmt::format("-n {} -d {}", fmt::join(nodes, ","), family), "; ");
+    append(lines, formatted("-n {} -d {}", fmt::join(nodes, ","), family), "; ");
   const auto& [one, here] = cast[0];
   const auto& [other, there] = cast[1];
   return fail(
       Errc::usage,
-      fmt::format("node {} is taken for {}, node {} for {}", here.front(), one, there.front(), other),
-      fmt::format("a line for each family, if the nameplates agree: {}; or a cabinet file (`cabinet init`)",
-                  lines));
+      formatted("node {} is taken for {}, node {} for {}", here.front(), one, there.front(), other),
+      formatted("a line for each family, if the nameplates agree: {}; or a cabinet file (`cabinet init`)",
+                lines));
 }
 
 }  // namespace
 
 /// Of a drive that restarts it is found out anew: it may be another one.
 std::string Shell::key_of(Session& session, std::uint8_t node) {
-  return fmt::format("{} {} {}", session::canonical_url(session.url()), node, session.watch().boots(node));
+  return formatted("{} {} {}", session::canonical_url(session.url()), node, session.watch().boots(node));
 }
 
 const Shell::FoundFamily* Shell::taken_for() const {
@@ -112,8 +113,8 @@ std::optional<KnownDrive> Shell::said_of(Run& run, Session& session, const Ident
   if (change.empty()) return std::move(*known);
   const auto removed = file.remove();
   run.context.notices.push_back(
-      fmt::format("node {} is not the drive that was said to be {}: {} is another; {}", identity.node,
-                  (*known)->family, change, removed ? "that is forgotten" : removed.error().message));
+      formatted("node {} is not the drive that was said to be {}: {} is another; {}", identity.node,
+                (*known)->family, change, removed ? "that is forgotten" : removed.error().message));
   return std::nullopt;
 }
 
@@ -127,31 +128,29 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
     if (!identity) return fail(identity.error());
     if (const auto said = said_of(run, session, *identity)) {
       run.context.notices.push_back(
-          fmt::format("node {} is taken for {}, as said with -d at {} for the drive of this identity", node,
-                      said->family, said->time));
+          formatted("node {} is taken for {}, as said with -d at {} for the drive of this identity", node,
+                    said->family, said->time));
       found = families_.emplace(key, FoundFamily{said->family, false}).first;
     } else {
       const auto fits = suggested(session, *identity, drive::find_families(options_.drive_folders));
       if (fits.empty()) return needs_family(*run.command, no_family_hint());
       if (fits.size() > 1 || changes)
         return needs_family(
-            *run.command,
-            fmt::format("the identity of node {} fits {} (a guess, not proof): if the nameplate "
-                        "agrees, add -d {}",
-                        node, one_of(fits), fits.front()));
+            *run.command, formatted("the identity of node {} fits {} (a guess, not proof): if the nameplate "
+                                    "agrees, add -d {}",
+                                    node, one_of(fits), fits.front()));
       run.context.notices.push_back(
-          fmt::format("node {} is taken for {}, which its identity fits: a guess, not proof; what writes or "
-                      "moves needs -d {}",
-                      node, fits.front(), fits.front()));
+          formatted("node {} is taken for {}, which its identity fits: a guess, not proof; what writes or "
+                    "moves needs -d {}",
+                    node, fits.front(), fits.front()));
       found = families_.emplace(key, FoundFamily{fits.front(), true}).first;
     }
   }
   if (changes && found->second.guessed)
     return needs_family(
-        *run.command,
-        fmt::format("node {} is taken for {} by its identity, a guess: if the nameplate agrees, "
-                    "add -d {}",
-                    node, found->second.family, found->second.family));
+        *run.command, formatted("node {} is taken for {} by its identity, a guess: if the nameplate agrees, "
+                                "add -d {}",
+                                node, found->second.family, found->second.family));
   return found->second.family;
 }
 
@@ -182,7 +181,7 @@ std::string Shell::no_family_hint() const {
   std::vector<std::string> names;
   for (const auto& family : drive::find_families(options_.drive_folders)) names.push_back(family.name);
   return names.empty() ? std::string("add -d FILE.eds or -d FILE.xml")
-                       : fmt::format("add -d {}, or -d with an .eds or .xml file", one_of(names));
+                       : formatted("add -d {}, or -d with an .eds or .xml file", one_of(names));
 }
 
 /// Says what the drives of the line are, where that can be found out.

@@ -1,6 +1,5 @@
 // What a line leaves for later ones: the family that was named for a drive, and what it wrote that may wait
 // for a restart. And whether the drive of an axis is still the one that the file says.
-#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
 #include <span>
@@ -8,6 +7,7 @@
 #include <system_error>
 
 #include "base/calendar.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_identity.hpp"
 #include "cli/shell.hpp"
@@ -39,8 +39,8 @@ constexpr Duration kGuardPatience = std::chrono::milliseconds(200);
 /// A stopped node answers no SDO.
 Error serial_not_read(const command::Command& command, const cabinet::Axis& axis, Error error) {
   if (error.code != Errc::timeout || !includes(command.needs, Needs::nmt)) return error;
-  error.message = fmt::format("its serial number cannot be checked: {}", error.message);
-  error.hint = fmt::format("`nmt preop -n {}` first, if the node is stopped", axis.node);
+  error.message = formatted("its serial number cannot be checked: {}", error.message);
+  error.hint = formatted("`nmt preop -n {}` first, if the node is stopped", axis.node);
   return error;
 }
 
@@ -68,7 +68,7 @@ void Shell::judge_writes(Run& run) {
     }
     std::string objects;
     for (const auto object : written) append(objects, to_string(object));
-    run.context.notices.push_back(fmt::format(
+    run.context.notices.push_back(formatted(
         "node {}: whether {} takes effect at once or after a restart is not known: its manual says it, or add -d FAMILY",
         node, objects));
   }
@@ -113,7 +113,7 @@ bool Shell::is_contradicted(Run& run, Session& session, const session::Identity&
   if (verdict.kind != session::FamilyVerdict::Kind::contradicted) return false;
   if (session.identities().is_news(identity.node, profile.family + "!"))
     run.context.notices.push_back(
-        fmt::format("node {}: not a {}: {}", identity.node, profile.family, verdict.why));
+        formatted("node {}: not a {}: {}", identity.node, profile.family, verdict.why));
   return true;
 }
 
@@ -147,7 +147,7 @@ void Shell::offer_turn(Run& run) {
   if (!known || !*known || (*known)->turn.empty()) return;
   const auto identity = session::read_identity(*session, node);
   if (!identity || !show::change_of((*known)->identity, *identity).empty()) return;
-  run.context.notices.push_back(fmt::format(
+  run.context.notices.push_back(formatted(
       "--turn {} was given for this drive at {}: add it if motor, encoder and gear are those of then",
       (*known)->turn, (*known)->time));
 }

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <variant>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "cli/shell.hpp"
 #include "motion/left_energised.hpp"
@@ -79,8 +79,7 @@ bool Shell::tell_lost_bus(Run& run, bool met) {
   if (met)
     errors.push_back(heard.error());
   else
-    run.context.notices.push_back(
-        fmt::format("{}, when what this line does was done", heard.error().message));
+    run.context.notices.push_back(formatted("{}, when what this line does was done", heard.error().message));
   return true;
 }
 
@@ -100,7 +99,7 @@ std::vector<std::string> Shell::take_written_to_both(session::Session& session) 
   std::erase_if(written_, [&, here = opening(session)](const auto& written) {
     const auto [where, node] = written;
     if (where != here || session::refuse_duplicate(session, node)) return false;
-    out.push_back(fmt::format(
+    out.push_back(formatted(
         "node {}: what was written may have gone to both drives: read it back from each alone", node));
     return true;
   });

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
 #include "cli/bus_choice.hpp"
@@ -34,8 +34,8 @@ void tell_all_of_bus(const command::Command& command, const Settings& settings,
   std::error_code error;
   const auto file = cabinet::find_cabinet(std::filesystem::current_path(error));
   if (!file.empty())
-    notices.push_back(fmt::format("all: the nodes of {} ({}), not the axes of {}",
-                                  name_of(settings.bus_from, "--bus"), settings.bus, file.string()));
+    notices.push_back(formatted("all: the nodes of {} ({}), not the axes of {}",
+                                name_of(settings.bus_from, "--bus"), settings.bus, file.string()));
 }
 
 /// What is shown while it runs, and what moves, is of one bus and family.
@@ -47,22 +47,22 @@ Result<void> check_several(const command::Command& command, const command::Argum
   if (!command.one_file.empty() && arguments.has(command.one_file))
     return fail(
         Errc::usage,
-        fmt::format(
+        formatted(
             "'{}' writes {} for axes of one bus and one family at a time; these are of {} buses or families",
             command.path, arguments.text(command.one_file), parts.size()),
         command.path == "backup"
-            ? fmt::format("`cabinet backup` saves all axes; or a file each, such as -n {}", first)
-            : fmt::format("a file each, such as -n {}", first));
+            ? formatted("`cabinet backup` saves all axes; or a file each, such as -n {}", first)
+            : formatted("a file each, such as -n {}", first));
   if (!command.goes_on && command.effect_with(arguments) != command::Effect::moves) return {};
   return fail(
       Errc::usage,
-      fmt::format("'{}' is for axes of one bus and one family at a time; these are of {} buses or families",
-                  command.path, parts.size()),
+      formatted("'{}' is for axes of one bus and one family at a time; these are of {} buses or families",
+                command.path, parts.size()),
       first.empty()     ? "name the bus: --bus " + parts.front().settings.bus
-      : command.goes_on ? fmt::format("it listens to one bus as it comes in: such as -n {}, and the "
-                                      "others in another terminal",
-                                      first)
-                        : fmt::format("such as -n {}", first));
+      : command.goes_on ? formatted("it listens to one bus as it comes in: such as -n {}, and the "
+                                    "others in another terminal",
+                                    first)
+                        : formatted("such as -n {}", first));
 }
 
 /// Bus and file contradict each other, and a drive is to be stopped: `all` are those of both, and numbers are
@@ -117,7 +117,7 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
     return std::vector<LinePart>();
   const auto known = cabinet(given);
   if (!known && command.way_out && rivals) {
-    notices.push_back(fmt::format("the cabinet file is not used: {}", known.error().message));
+    notices.push_back(formatted("the cabinet file is not used: {}", known.error().message));
     return std::vector<LinePart>();
   }
   if (!known) return fail(known.error());

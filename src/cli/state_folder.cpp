@@ -2,10 +2,10 @@
 
 #include <sys/stat.h>
 
-#include <fmt/format.h>
 #include <cstdlib>
 #include <system_error>
 
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 
 namespace servoctl::cli {
@@ -30,7 +30,7 @@ StateFolder state_folder_as_it_is() {
   const auto own = check_own_folder(folder);
   if (own) return {folder, {}};
   return {{},
-          fmt::format("{}: nothing is kept or remembered there; {}", own.error().message, own.error().hint)};
+          formatted("{}: nothing is kept or remembered there; {}", own.error().message, own.error().hint)};
 }
 
 StateFolder state_folder() {

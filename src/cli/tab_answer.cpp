@@ -1,10 +1,10 @@
 #include "cli/tab_answer.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
 #include <iterator>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
@@ -92,13 +92,13 @@ std::string for_zsh(const Tab& tab, bool chinese) {
                                  [&](const Candidate& one) { return one.group == heading.group; });
     if (any)
       lines.push_back(
-          fmt::format("={} {}", heading.tag,
-                      chinese ? report::in_chinese(heading.english) : std::string(heading.english)));
+          formatted("={} {}", heading.tag,
+                    chinese ? report::in_chinese(heading.english) : std::string(heading.english)));
   }
   for (const auto& one : tab.candidates) {
     const auto* heading = std::find_if(std::begin(kHeadings), std::end(kHeadings),
                                        [&](const Heading& each) { return each.group == one.group; });
-    auto word = fmt::format("{}{}", heading->tag, word_goes_on(one.word) ? "+" : "-");
+    auto word = formatted("{}{}", heading->tag, word_goes_on(one.word) ? "+" : "-");
     for (const char c : one.word) word += c == ':' || c == '\\' ? std::string("\\") + c : std::string(1, c);
     lines.push_back(one.hint.empty() ? word : word + ":" + one.hint);
   }

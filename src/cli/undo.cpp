@@ -1,7 +1,7 @@
 // `undo`: what is held against the drive before a value is put back.
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "can/socketcan.hpp"
@@ -28,13 +28,13 @@ Result<void> check_value(session::Session& session, std::uint64_t opening, const
   const auto identity = session::read_identity(session, value.node);
   if (!identity) return fail(identity.error());
   if (const auto change = show::change_of(value.identity, *identity); !change.empty())
-    return refused(fmt::format("is another drive than the one that was written to: {}", change));
+    return refused(formatted("is another drive than the one that was written to: {}", change));
   const auto now = session.upload(value.node, value.object);
   if (!now) return fail(now.error());
   // Where an undo was cut off behind its write it holds that already.
   if (*now != value.after && *now != value.before)
-    return refused(fmt::format("no longer holds in {} ({}) what was written: somebody has changed it since",
-                               value.name, to_string(value.object)));
+    return refused(formatted("no longer holds in {} ({}) what was written: somebody has changed it since",
+                             value.name, to_string(value.object)));
   return {};
 }
 
@@ -56,15 +56,15 @@ Result<void> check_line(Shell& shell, const WrittenLine& line) {
   auto settings = shell.defaults();
   if (!line.by_axis && url_in_use(shell) != session::canonical_url(line.bus))
     return fail(Errc::refused,
-                fmt::format("the last write was on {}, and the prompt is not there any more", line.bus),
-                fmt::format("`bus {}`, and then `undo`", line.bus));
+                formatted("the last write was on {}, and the prompt is not there any more", line.bus),
+                formatted("`bus {}`, and then `undo`", line.bus));
   if (settings.nodes != line.place)
     return fail(Errc::refused,
-                fmt::format("the last write was made with {} in use, and now {} is",
-                            line.place.empty() ? "no node" : line.place,
-                            settings.nodes.empty() ? "none" : settings.nodes),
+                formatted("the last write was made with {} in use, and now {} is",
+                          line.place.empty() ? "no node" : line.place,
+                          settings.nodes.empty() ? "none" : settings.nodes),
                 line.place.empty() ? "`param set` writes it by hand"
-                                   : fmt::format("`use {}`, and then `undo`", line.place));
+                                   : formatted("`use {}`, and then `undo`", line.place));
   settings.bus = line.bus;
   settings.of_cabinet = line.of_cabinet;
   settings.names = line.names;
@@ -80,18 +80,18 @@ std::string undo_question(const WrittenLine& line) {
   for (const auto& value : line.values) {
     if (!out.empty()) out += "; ";
     const auto after = value.after_shown.empty() ? "what was written" : value.after_shown;
-    out += value.target == std::to_string(value.node)
-               ? fmt::format("{} on node {}: {} in place of {}", value.shown, value.node, value.before_shown,
-                             after)
-               : fmt::format("{} on {}: {} in place of {}", value.shown, value.target, value.before_shown,
-                             after);
+    out +=
+        value.target == std::to_string(value.node)
+            ? formatted("{} on node {}: {} in place of {}", value.shown, value.node, value.before_shown,
+                        after)
+            : formatted("{} on {}: {} in place of {}", value.shown, value.target, value.before_shown, after);
   }
   const bool blind = std::any_of(line.values.begin(), line.values.end(),
                                  [](const WrittenValue& value) { return value.identity.by_registers; });
   return std::string(blind ? "Over Modbus nothing tells whether it is the same drive. " : "") +
          (line.turned ? "This takes back the last `undo`. " : "") +
-         (line.keep ? fmt::format("Put back, and keep at power-off, {}?", out)
-                    : fmt::format("Put back {}?", out));
+         (line.keep ? formatted("Put back, and keep at power-off, {}?", out)
+                    : formatted("Put back {}?", out));
 }
 
 Result<void> confirm_undo(Shell& shell, const WrittenLine& line, bool yes) {
@@ -155,8 +155,8 @@ int put_back(Shell& shell, const WrittenLine& line, bool yes) {
     return code;
   }
   if (left.values.size() < line.values.size())
-    shell.console().note(fmt::format("notice: {} of {} values are put back; `undo` goes on with the others\n",
-                                     line.values.size() - left.values.size(), line.values.size()));
+    shell.console().note(formatted("notice: {} of {} values are put back; `undo` goes on with the others\n",
+                                   line.values.size() - left.values.size(), line.values.size()));
   shell.last_write().keep(std::move(left));
   return code;
 }

@@ -1,9 +1,9 @@
 #include "cli/unknown_command.hpp"
 
-#include <fmt/format.h>
 #include <span>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cli/batch/batch.hpp"
 #include "command/prompt_words.hpp"
@@ -86,11 +86,11 @@ std::string hint_by_meaning(std::string_view word, std::string_view said) {
 Error unknown_in_group(const std::string& said, std::span<const std::string> paths) {
   auto hint = split(said, ' ').size() > 1 ? did_you_mean(said, paths) : std::string();
   std::vector<std::string> quoted;
-  for (const auto& path : paths) quoted.push_back(fmt::format("`{}`", path));
-  if (hint.empty() || switches_by_itself(said)) hint = fmt::format("use {}", one_of(quoted));
+  for (const auto& path : paths) quoted.push_back(formatted("`{}`", path));
+  if (hint.empty() || switches_by_itself(said)) hint = formatted("use {}", one_of(quoted));
   if (switches_by_itself(said))
     hint = "each LSS command selects its slave by itself, and lets it go in the end; " + hint;
-  return make_error(Errc::usage, fmt::format("'{}' is not a command", said), std::move(hint));
+  return make_error(Errc::usage, formatted("'{}' is not a command", said), std::move(hint));
 }
 
 }  // namespace
@@ -105,21 +105,21 @@ Error unknown_command(const std::vector<std::string>& words, std::size_t first) 
       in_group.emplace_back(command->path);
   if (!in_group.empty()) return unknown_in_group(said, in_group);
   if (goes_on && (word == "exit" || word == "quit"))
-    return make_error(Errc::usage, fmt::format("'{}' stands alone", word), {});
+    return make_error(Errc::usage, formatted("'{}' stands alone", word), {});
   if (const auto* of_prompt = command::find_prompt_word(word); of_prompt != nullptr)
     return make_error(
-        Errc::usage, fmt::format("'{}' is a word of the prompt, and no command", of_prompt->name),
-        fmt::format("`servoctl` alone opens the prompt; `help {}` says what it does", of_prompt->name));
+        Errc::usage, formatted("'{}' is a word of the prompt, and no command", of_prompt->name),
+        formatted("`servoctl` alone opens the prompt; `help {}` says what it does", of_prompt->name));
   if (auto meaning = hint_by_meaning(word, said); !meaning.empty())
-    return make_error(Errc::usage, fmt::format("'{}' is not a command", word), std::move(meaning));
+    return make_error(Errc::usage, formatted("'{}' is not a command", word), std::move(meaning));
   if (is_batch_word(word))
-    return make_error(Errc::usage, fmt::format("'{}' is a word of batch files, and no command", word),
+    return make_error(Errc::usage, formatted("'{}' is a word of batch files, and no command", word),
                       "`run FILE` runs one; `help run` tells its words");
   const auto known = known_commands();
   auto hint = goes_on ? did_you_mean(said, known) : std::string();
   if (hint.empty()) hint = did_you_mean(word, known);
   if (hint.empty()) hint = "`help` lists the commands";
-  return make_error(Errc::usage, fmt::format("'{}' is not a command", word), std::move(hint));
+  return make_error(Errc::usage, formatted("'{}' is not a command", word), std::move(hint));
 }
 
 }  // namespace servoctl::cli

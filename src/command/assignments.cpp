@@ -1,6 +1,6 @@
 #include "command/assignments.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl::command {
 
@@ -12,15 +12,15 @@ Result<std::vector<Assignment>> parse_assignments(std::span<const std::string> w
   }
   if (words.size() == 1 && words[0].find('=') == std::string::npos)
     return fail(
-        Errc::usage, fmt::format("no value is given for '{}'", words[0]),
-        fmt::format("`param set {0} VALUE` sets it; `param explain {0}` shows its range, `param get {0}` "
-                    "reads it",
-                    words[0].find(' ') == std::string::npos ? words[0] : "'" + words[0] + "'"));
+        Errc::usage, formatted("no value is given for '{}'", words[0]),
+        formatted("`param set {0} VALUE` sets it; `param explain {0}` shows its range, `param get {0}` "
+                  "reads it",
+                  words[0].find(' ') == std::string::npos ? words[0] : "'" + words[0] + "'"));
   for (const auto& word : words) {
     const auto equals = word.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == word.size())
       return fail(
-          Errc::usage, fmt::format("'{}' is not an assignment", word),
+          Errc::usage, formatted("'{}' is not an assignment", word),
           "write `param set ID VALUE` or `param set ID=VALUE ID=VALUE`; a unit stands behind its number "
           "without a blank: 45Hz");
     out.push_back({std::string_view(word).substr(0, equals), std::string_view(word).substr(equals + 1)});

@@ -1,8 +1,7 @@
 #include "command/duration_option.hpp"
 
-#include <fmt/format.h>
-
 #include "base/duration.hpp"
+#include "base/format.hpp"
 
 namespace servoctl::command {
 
@@ -11,11 +10,11 @@ Result<std::optional<Duration>> duration_option(const Arguments& arguments, std:
   auto time = read_duration(arguments.text(name));
   if (!time) {
     auto error = time.error();
-    error.message = fmt::format("{}: {}", name, error.message);
+    error.message = formatted("{}: {}", name, error.message);
     return fail(std::move(error));
   }
   if (*time == Duration::zero())
-    return fail(Errc::usage, fmt::format("{}: '{}' is too short", name, arguments.text(name)),
+    return fail(Errc::usage, formatted("{}: '{}' is too short", name, arguments.text(name)),
                 "write 500ms or 10s");
   return std::optional(*time);
 }

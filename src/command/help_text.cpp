@@ -1,10 +1,10 @@
 #include "command/help_text.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/prompt_words.hpp"
 #include "command/registry.hpp"
@@ -27,8 +27,8 @@ class HelpPage {
   HelpPage(std::size_t width, bool chinese) : width_(width), chinese_(chinese) {}
 
   std::string of(const Command& command) const {
-    auto out = fmt::format("{}\n\n{}\n", wrapped("servoctl " + usage_line(command.path), 4, width_),
-                           sentence(command.summary));
+    auto out = formatted("{}\n\n{}\n", wrapped("servoctl " + usage_line(command.path), 4, width_),
+                         sentence(command.summary));
     if (!command.details.empty()) out += "\n" + wrapped(said(command.details), 0, width_) + "\n";
     if (const auto words = rows(command.parameters, false); !words.empty())
       out += "\n" + said("Arguments:") + "\n" + words;
@@ -42,10 +42,10 @@ class HelpPage {
 
   std::string of(const PromptWord& word) const {
     const auto group = command_rows(word.name);
-    return fmt::format("{} {}\n\n{}\n\n{}\n{}{}", said("At the prompt:"), prompt_usage(word),
-                       sentence(word.summary), wrapped(said(word.details), 0, width_),
-                       example_lines(word.examples),
-                       group.empty() ? "" : fmt::format("\nservoctl {} …\n\n{}", word.name, group));
+    return formatted("{} {}\n\n{}\n\n{}\n{}{}", said("At the prompt:"), prompt_usage(word),
+                     sentence(word.summary), wrapped(said(word.details), 0, width_),
+                     example_lines(word.examples),
+                     group.empty() ? "" : formatted("\nservoctl {} …\n\n{}", word.name, group));
   }
 
   /// What it does, and for which commands, where that differs; empty where none has it.
@@ -131,7 +131,7 @@ class HelpPage {
     if (examples.empty()) return {};
     auto out = "\n" + said("Examples:") + "\n";
     for (const auto& example : examples)
-      out += fmt::format("  {}\n      {}\n", example.line, wrapped(said(example.what), 6, width_));
+      out += formatted("  {}\n      {}\n", example.line, wrapped(said(example.what), 6, width_));
     return out;
   }
 
@@ -184,14 +184,14 @@ Result<std::string> help_text(std::string_view path, std::size_t width, bool chi
   if (const auto* command = find_command(path)) return page.of(*command);
   if (const auto* word = find_prompt_word(path)) return page.of(*word);
   if (const auto group = page.command_rows(path); !group.empty())
-    return fmt::format("servoctl {} …\n\n{}", path, group);
+    return formatted("servoctl {} …\n\n{}", path, group);
   if (auto option = path.starts_with('-') ? page.of_option(path) : std::string(); !option.empty())
     return option;
   std::vector<std::string> names;
   for (const auto* command : registry()) names.emplace_back(command->path);
   for (const auto& word : prompt_words()) names.emplace_back(word.name);
   auto hint = did_you_mean(path, names);
-  return fail(Errc::usage, fmt::format("'{}' is not a command", path),
+  return fail(Errc::usage, formatted("'{}' is not a command", path),
               hint.empty() ? "`help` lists the commands" : std::move(hint));
 }
 

@@ -1,7 +1,6 @@
 #include "command/interface_option.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "can/link.hpp"
 #include "session/open_bus.hpp"
@@ -12,7 +11,7 @@ Result<std::string> interface_argument(const Arguments& arguments) {
   auto name = session::canonical_url(arguments.text("interface"));
   if (name.find(':') != std::string::npos)
     return fail(
-        Errc::usage, fmt::format("{} is no CAN interface of the kernel", name),
+        Errc::usage, formatted("{} is no CAN interface of the kernel", name),
         name.starts_with("slcan:")
             ? "the bitrate of such an adapter stands behind the @ and is set when it is opened: `scan -b "
               "slcan:PORT@500k`"
@@ -25,8 +24,8 @@ Result<std::optional<std::uint32_t>> number_option(const Arguments& arguments, s
   if (!arguments.has(name)) return std::optional<std::uint32_t>();
   const auto number = parse_digits(arguments.text(name), 10);
   if (!number || *number < least || *number > most)
-    return fail(Errc::usage, fmt::format("{}: '{}' is not a number from {} to {}", name, arguments.text(name),
-                                         least, most));
+    return fail(Errc::usage,
+                formatted("{}: '{}' is not a number from {} to {}", name, arguments.text(name), least, most));
   return std::optional(static_cast<std::uint32_t>(*number));
 }
 
@@ -36,16 +35,16 @@ Result<void> hold_energised(const Context& context, const std::string& name) {
   if (nodes.empty()) return {};
   return fail(
       Errc::refused,
-      fmt::format("{} stays as it is: node {} was left energised over it, and could not be stopped any more",
-                  name, nodes.front()),
-      fmt::format("`disable -n {}` first", nodes.front()));
+      formatted("{} stays as it is: node {} was left energised over it, and could not be stopped any more",
+                name, nodes.front()),
+      formatted("`disable -n {}` first", nodes.front()));
 }
 
 std::string who_receives(const std::string& name) {
   const auto count = can::link_receivers(name);
   if (count == 0) return {};
-  return fmt::format("{} program{} of this machine receive{} from {} now", count, count == 1 ? "" : "s",
-                     count == 1 ? "s" : "", name);
+  return formatted("{} program{} of this machine receive{} from {} now", count, count == 1 ? "" : "s",
+                   count == 1 ? "s" : "", name);
 }
 
 }  // namespace servoctl::command

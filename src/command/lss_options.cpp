@@ -1,8 +1,8 @@
 #include "command/lss_options.hpp"
 
-#include <fmt/format.h>
 #include <array>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "session/can_network.hpp"
 #include "session/identify.hpp"
@@ -60,7 +60,7 @@ Result<std::optional<std::uint32_t>> lss_number(const Arguments& arguments, std:
   const auto number = parse_integer(arguments.text(name));
   const auto value = number ? number->as_unsigned() : std::nullopt;
   if (!value || *value > 0xFFFF'FFFFU)
-    return fail(Errc::usage, fmt::format("{}: '{}' is not a number of 32 bits", name, arguments.text(name)),
+    return fail(Errc::usage, formatted("{}: '{}' is not a number of 32 bits", name, arguments.text(name)),
                 "write 1234 or 0x4D2; `scan --long` and `lss scan` show such numbers");
   return std::optional(static_cast<std::uint32_t>(*value));
 }
@@ -92,9 +92,9 @@ Result<LssChoice> lss_choice(Context& context, const Arguments& arguments) {
   const auto* chosen = numbers_given(arguments) == 0 && !context.nodes_typed ? selected(context) : nullptr;
   if (chosen != nullptr) {
     context.notices.push_back(
-        fmt::format("the LSS slave that was selected: vendor 0x{:08X}, product 0x{:08X}, "
-                    "revision 0x{:08X}, serial {}",
-                    chosen->vendor, chosen->product, chosen->revision, chosen->serial));
+        formatted("the LSS slave that was selected: vendor 0x{:08X}, product 0x{:08X}, "
+                  "revision 0x{:08X}, serial {}",
+                  chosen->vendor, chosen->product, chosen->revision, chosen->serial));
     return LssChoice{*chosen};
   }
   if (numbers_given(arguments) == 0) {

@@ -1,7 +1,6 @@
 #include "command/man_page.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/help_text.hpp"
 #include "command/prompt_words.hpp"
@@ -29,7 +28,7 @@ class ManPage {
   explicit ManPage(bool chinese) : chinese_(chinese) {}
 
   std::string head(std::string_view version, std::string_view date) const {
-    return fmt::format(
+    return formatted(
                ".\\\" Written by `servoctl man`.\n.TH SERVOCTL 1 \"{}\" \"servoctl {}\" \"{}\"\n"
                ".nh\n.ad l\n",
                date, roff_literal(version), roff_literal(said("User commands"))) +
@@ -108,7 +107,7 @@ class ManPage {
   /// In capitals, as headings of manual pages are. What whatis and apropos read, this and the line of the
   /// name, is not escaped: they do not know escapes.
   std::string section(std::string_view name) const {
-    return fmt::format(".SH {}\n", chinese_ ? said(name) : upper(name));
+    return formatted(".SH {}\n", chinese_ ? said(name) : upper(name));
   }
 
   std::string tagged(const std::string& tag, std::string_view english) const {
@@ -125,19 +124,19 @@ class ManPage {
   std::string example_rows(std::string_view before, std::span<const Example> examples) const {
     std::string out;
     for (const auto& example : examples)
-      out += tagged(bold(fmt::format("{}{}", before, example.line)), example.what);
+      out += tagged(bold(formatted("{}{}", before, example.line)), example.what);
     return out.empty() ? out : paragraph("Examples:") + out;
   }
 
   std::string part(const PromptWord& word) const {
-    return fmt::format(".SS {}{}\n", bold(word.name),
-                       roff_literal(prompt_usage(word).substr(word.name.size()))) +
+    return formatted(".SS {}{}\n", bold(word.name),
+                     roff_literal(prompt_usage(word).substr(word.name.size()))) +
            sentence(word.summary) + paragraph(word.details) + example_rows({}, word.examples);
   }
 
   std::string part(const Command& command) const {
     const auto line = usage_line(command.path);
-    auto out = fmt::format(".SS {}{}\n", bold(command.path), roff_literal(line.substr(command.path.size())));
+    auto out = formatted(".SS {}{}\n", bold(command.path), roff_literal(line.substr(command.path.size())));
     out += sentence(command.summary);
     if (!command.details.empty()) out += paragraph(command.details);
     return out + parameter_rows(command.parameters) + example_rows("servoctl ", command.examples);

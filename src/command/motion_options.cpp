@@ -1,7 +1,6 @@
 #include "command/motion_options.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
@@ -23,8 +22,7 @@ Result<motion::PanelValues> panel_values(std::string_view text) {
     const auto number =
         equals == std::string_view::npos ? std::nullopt : parse_signed(part.substr(equals + 1));
     if (!number || equals == 0)
-      return fail(Errc::usage, fmt::format("--panel: '{}' is not NAME=VALUE", part),
-                  "such as --panel PA-20=0");
+      return fail(Errc::usage, formatted("--panel: '{}' is not NAME=VALUE", part), "such as --panel PA-20=0");
     out[std::string(part.substr(0, equals))] = *number;
   }
   return out;
@@ -51,7 +49,7 @@ Result<motion::MotionOptions> motion_options(const Context& context, const Argum
     if (!arguments.has(name)) continue;
     const auto counts = number(arguments, name);
     if (!counts || *counts == 0)
-      return fail(Errc::usage, fmt::format("'{}' is not a number of counts", arguments.text(name)),
+      return fail(Errc::usage, formatted("'{}' is not a number of counts", arguments.text(name)),
                   "such as 131072 for 17 bits");
     *place = static_cast<double>(*counts);
   }
@@ -63,7 +61,7 @@ Result<motion::MotionOptions> motion_options(const Context& context, const Argum
   if (!arguments.has("--master-node")) return out;
   const auto id = number(arguments, "--master-node");
   if (!id || *id < canopen::kFirstNode || *id > canopen::kLastNode)
-    return fail(Errc::usage, fmt::format("'{}' is not a node-ID", arguments.text("--master-node")),
+    return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("--master-node")),
                 "write 1..127");
   out.producer = static_cast<std::uint8_t>(*id);
   return out;

@@ -1,10 +1,10 @@
 #include "command/nmt_result.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "session/can_network.hpp"
 
 namespace servoctl::command {
@@ -27,7 +27,7 @@ constexpr std::string_view kSetAndNotStored =
 
 std::string whom_nmt(std::span<const std::uint8_t> nodes) {
   if (nodes.front() == 0) return "all nodes";
-  return nodes.size() == 1 ? fmt::format("node {}", nodes.front()) : fmt::format("{} nodes", nodes.size());
+  return nodes.size() == 1 ? formatted("node {}", nodes.front()) : formatted("{} nodes", nodes.size());
 }
 
 }  // namespace
@@ -46,14 +46,14 @@ bool is_confirmed(session::Session& session, const NodeLife& before, NmtCommand 
 Error unconfirmed(const NodeLife& before, NmtCommand command, const session::Heartbeats& heartbeats,
                   const canopen::NodeWatch& watch) {
   auto error = drive_error(Errc::timeout, before.node,
-                           fmt::format("'{}' was sent but not confirmed", canopen::name(command)));
+                           formatted("'{}' was sent but not confirmed", canopen::name(command)));
   const auto& silent = heartbeats.silent;
   if (is_reset(command))
     error.hint =
         "no boot-up message: it may have restarted with another node-ID or bitrate; `scan` shows who answers";
   else if (std::find(silent.begin(), silent.end(), before.node) != silent.end())
     error.hint =
-        fmt::format("the node sends no heartbeat: `heartbeat set 500ms -n {}` switches it on", before.node);
+        formatted("the node sends no heartbeat: `heartbeat set 500ms -n {}` switches it on", before.node);
   else if (watch.heartbeats(before.node) > before.heartbeats)
     error.hint = "its heartbeats still show another state";
   else
@@ -82,14 +82,14 @@ report::Table nmt_table(Context& context, std::span<const NodeLife> before, NmtC
 }
 
 std::string communication_goes() {
-  return fmt::format("by CiA 301, 1000h to 1FFFh go back to their power-on values: {} are lost",
-                     kSetAndNotStored);
+  return formatted("by CiA 301, 1000h to 1FFFh go back to their power-on values: {} are lost",
+                   kSetAndNotStored);
 }
 
 std::string question_nmt(std::span<const std::uint8_t> nodes, NmtCommand command) {
   if (command == NmtCommand::reset_node)
-    return fmt::format("Reset {}? Drives restart; a moving axis is no longer controlled.", whom_nmt(nodes));
-  return fmt::format(
+    return formatted("Reset {}? Drives restart; a moving axis is no longer controlled.", whom_nmt(nodes));
+  return formatted(
       "Reset the communication of {}? PDOs and heartbeats pause, so a moving axis may lose its control; {}.",
       whom_nmt(nodes), communication_goes());
 }
@@ -100,8 +100,8 @@ void tell_reset(Context& context, std::span<const NodeLife> before, NmtCommand c
   for (const auto& entry : before)
     if (waited && is_confirmed(*context.session, entry, NmtCommand::reset_communication))
       context.notices.push_back(
-          fmt::format("node {}: by CiA 301 1000h to 1FFFh now have their power-on values: {} are lost",
-                      entry.node, kSetAndNotStored));
+          formatted("node {}: by CiA 301 1000h to 1FFFh now have their power-on values: {} are lost",
+                    entry.node, kSetAndNotStored));
     else
       unseen = true;
   if (unseen) context.notices.push_back(communication_goes());

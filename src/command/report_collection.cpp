@@ -1,11 +1,11 @@
 #include "command/report_collection.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <functional>
 #include <map>
 #include <utility>
 
+#include "base/format.hpp"
 #include "cabinet/axis_sheet.hpp"
 #include "cabinet/cabinet.hpp"
 #include "command/command.hpp"
@@ -123,10 +123,10 @@ class Collection {
 
   static std::string not_taken(const trial::EarlierTest& test) {
     if (!test.axis.empty())
-      return fmt::format("test {} of axis {} is not in the report: add the axis to -n", test.result.test,
-                         test.axis);
-    return fmt::format("test {} of node {} is not in the report: add the node to -n", test.result.test,
-                       test.result.node);
+      return formatted("test {} of axis {} is not in the report: add the axis to -n", test.result.test,
+                       test.axis);
+    return formatted("test {} of node {} is not in the report: add the node to -n", test.result.test,
+                     test.result.node);
   }
 
   bool is_of(const Tested& one, std::uint8_t node) const {
@@ -178,7 +178,7 @@ class Collection {
 
   std::string title_of(std::uint8_t node) const {
     const auto name = name_of(node);
-    return name.empty() ? say(fmt::format("Node {}", node)) : say(fmt::format("{} (node {})", name, node));
+    return name.empty() ? say(formatted("Node {}", node)) : say(formatted("{} (node {})", name, node));
   }
 
   Result<trial::DriveReport> of_drive(std::uint8_t node) {
@@ -207,9 +207,8 @@ class Collection {
       if (!one) return fail(one.error());
       const bool silent = one->value.is_null() && wanted.id == "identity";
       if (wanted.id == "identity")
-        one->remarks.push_back(
-            say(fmt::format("the drive data were checked against: {}",
-                            drive::provenance_text(*context_->profile, context_->chinese))));
+        one->remarks.push_back(say(formatted("the drive data were checked against: {}",
+                                             drive::provenance_text(*context_->profile, context_->chinese))));
       out.parts.push_back(std::move(*one));
       if (silent) return out;  // Each further part would only wait for it.
     }

@@ -1,10 +1,9 @@
 #include "command/roff.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdint>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
 
@@ -27,7 +26,7 @@ std::string escaped(char32_t c, bool literal) {
     default: break;
   }
   return c < 0x80 ? std::string(1, static_cast<char>(c))
-                  : fmt::format("\\[u{:04X}]", static_cast<std::uint32_t>(c));
+                  : formatted("\\[u{:04X}]", static_cast<std::uint32_t>(c));
 }
 
 /// A word of prose, `node-ID`, has hyphens; an option, a path or a number has minus signs.

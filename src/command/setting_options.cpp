@@ -1,6 +1,6 @@
 #include "command/setting_options.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl::command {
 
@@ -8,8 +8,8 @@ Result<void> check_resume(const Arguments& arguments) {
   if (!arguments.has("--resume")) return {};
   for (const auto* option : {"--keep", "--unlock", "--force", "--with-address"})
     if (arguments.has(option))
-      return fail(Errc::usage, fmt::format("--resume uses the original options, not {}", option),
-                  fmt::format("leave {} away", option));
+      return fail(Errc::usage, formatted("--resume uses the original options, not {}", option),
+                  formatted("leave {} away", option));
   return {};
 }
 

@@ -1,7 +1,6 @@
 #include "command/trial_options.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "command/duration_option.hpp"
 
@@ -16,8 +15,7 @@ Result<double> number_option(const Arguments& arguments, std::string_view name, 
   if (!arguments.has(name)) return otherwise;
   const auto number = parse_real(arguments.text(name));
   if (!number || *number < 0)
-    return fail(Errc::usage,
-                fmt::format("{}: '{}' is not a number of 0 or more", name, arguments.text(name)));
+    return fail(Errc::usage, formatted("{}: '{}' is not a number of 0 or more", name, arguments.text(name)));
   return *number;
 }
 
@@ -57,8 +55,8 @@ Result<std::uint32_t> count_option(const Arguments& arguments, std::string_view 
   if (!arguments.has(name)) return otherwise;
   const auto number = parse_digits(arguments.text(name), 10);
   if (!number || *number < least || *number > most)
-    return fail(Errc::usage, fmt::format("{}: '{}' is not a number from {} to {}", name, arguments.text(name),
-                                         least, most));
+    return fail(Errc::usage,
+                formatted("{}: '{}' is not a number from {} to {}", name, arguments.text(name), least, most));
   return static_cast<std::uint32_t>(*number);
 }
 

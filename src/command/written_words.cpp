@@ -1,8 +1,7 @@
 #include "command/written_words.hpp"
 
-#include <fmt/format.h>
-
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "command/duration_option.hpp"
 
@@ -16,7 +15,7 @@ Result<void> check_time(const Command& command, const Parameter& parameter, cons
   }
   const auto time = read_duration(arguments.text(parameter.name));
   if (time) return {};
-  return fail(Errc::usage, fmt::format("{}: {}", parameter.name, time.error().message), time.error().hint);
+  return fail(Errc::usage, formatted("{}: {}", parameter.name, time.error().message), time.error().hint);
 }
 
 }  // namespace
@@ -29,7 +28,7 @@ Result<void> check_written(const Command& command, const Arguments& arguments) {
     if (parameter.kind != Kind::number) continue;
     for (const auto& text : arguments.all(parameter.name))
       if (!parse_integer(text) && !parse_real(text))
-        return fail(Errc::usage, fmt::format("{}: '{}' is not a number", parameter.name, text));
+        return fail(Errc::usage, formatted("{}: '{}' is not a number", parameter.name, text));
   }
   return {};
 }

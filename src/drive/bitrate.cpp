@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/naming.hpp"
@@ -35,7 +36,7 @@ std::vector<Code> codes_of(const Profile& profile) {
 
 Result<std::uint32_t> parse_bitrate(std::string_view text) {
   const auto wrong = [&] {
-    return fail(Errc::usage, fmt::format("'{}' is not a bitrate of CAN", text),
+    return fail(Errc::usage, formatted("'{}' is not a bitrate of CAN", text),
                 "10k to 1M: 125k, 250k, 500k, 1M");
   };
   const auto word = lower(trim(text));
@@ -56,9 +57,9 @@ Result<std::uint32_t> parse_bitrate(std::string_view text) {
 }
 
 std::string bitrate_text(std::uint32_t bitrate) {
-  if (bitrate % 1'000'000 == 0) return fmt::format("{} Mbit/s", bitrate / 1'000'000);
-  if (bitrate % 1'000 == 0) return fmt::format("{} kbit/s", bitrate / 1'000);
-  return fmt::format("{} bit/s", bitrate);
+  if (bitrate % 1'000'000 == 0) return formatted("{} Mbit/s", bitrate / 1'000'000);
+  if (bitrate % 1'000 == 0) return formatted("{} kbit/s", bitrate / 1'000);
+  return formatted("{} bit/s", bitrate);
 }
 
 std::vector<std::uint32_t> bitrates_of(const Profile& profile) {
@@ -77,22 +78,21 @@ std::optional<std::uint32_t> bitrate_of_code(const Profile& profile, std::int64_
 Result<std::int64_t> bitrate_code(const Profile& profile, std::uint32_t bitrate) {
   const auto& name = profile.rules.nmt.bitrate;
   if (name.empty())
-    return fail(Errc::usage,
-                fmt::format("no parameter of a {} is known that sets its bitrate", profile.family),
+    return fail(Errc::usage, formatted("no parameter of a {} is known that sets its bitrate", profile.family),
                 "look into its manual: switches, its panel, or the vendor's software");
   const auto codes = codes_of(profile);
   if (codes.empty())
     return fail(
         Errc::usage,
-        fmt::format("which bitrates the codes of {} stand for is not known of a {}", name, profile.family),
-        fmt::format("its manual prints none; `read {}` shows the present code", name));
+        formatted("which bitrates the codes of {} stand for is not known of a {}", name, profile.family),
+        formatted("its manual prints none; `read {}` shows the present code", name));
   const auto found =
       std::find_if(codes.begin(), codes.end(), [&](const Code& code) { return code.bitrate == bitrate; });
   if (found != codes.end()) return found->value;
   std::vector<std::string> known;
   for (const auto each : bitrates_of(profile)) known.push_back(bitrate_text(each));
-  return fail(Errc::usage, fmt::format("a {} has no {}", profile.family, bitrate_text(bitrate)),
-              fmt::format("it has {}", fmt::join(known, ", ")));
+  return fail(Errc::usage, formatted("a {} has no {}", profile.family, bitrate_text(bitrate)),
+              formatted("it has {}", fmt::join(known, ", ")));
 }
 
 }  // namespace servoctl::drive

@@ -1,10 +1,10 @@
 #include "drive/cia402.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <iterator>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::drive {
@@ -140,11 +140,11 @@ std::string device_kind(std::uint32_t device_type) {
   const auto profile = device_type & 0xFFFFU;
   if (profile == 0) return "no device profile";
   if (profile != 402)
-    return fmt::format("{} {}", profile >= 400 && profile < 500 ? "CiA" : "device profile", profile);
+    return formatted("{} {}", profile >= 400 && profile < 500 ? "CiA" : "device profile", profile);
   constexpr std::string_view kKinds[] = {"frequency converter", "servo drive", "stepper motor"};
   std::string out;
   for (std::size_t i = 0; i < std::size(kKinds); ++i)
-    if ((device_type >> (16 + i) & 1U) != 0) append(out, fmt::format("{}", kKinds[i]), " and ");
+    if ((device_type >> (16 + i) & 1U) != 0) append(out, formatted("{}", kKinds[i]), " and ");
   return "CiA 402, " + (out.empty() ? std::string("kind of drive not stated") : out);
 }
 

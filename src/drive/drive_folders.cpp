@@ -1,5 +1,4 @@
 // Where the data of the families stand, and which of them are trusted.
-#include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 #include "base/text.hpp"
 #include "drive/family_files.hpp"
@@ -90,9 +90,9 @@ Result<void> check_family_file(const fs::path& file) {
   if (std::any_of(named.begin(), named.end(), holds) || std::none_of(found.begin(), found.end(), holds))
     return {};
   return check_found_file(file,
-                          fmt::format("nothing of these drive data was used; if you trust them, name their "
-                                      "folder: SERVOCTL_DRIVES={}",
-                                      file.parent_path().string()),
+                          formatted("nothing of these drive data was used; if you trust them, name their "
+                                    "folder: SERVOCTL_DRIVES={}",
+                                    file.parent_path().string()),
                           owner_of_program());
 }
 

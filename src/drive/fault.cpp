@@ -1,10 +1,10 @@
 #include "drive/fault.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
 #include "base/csv.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 
 namespace servoctl::drive {
@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 12> kColumns{"code",       "extra",   "pa
 
 tl::unexpected<Error> bad_cell(std::string_view file, std::uint32_t line, std::string_view column,
                                std::string_view cell, std::string_view expected) {
-  return fail(file_error(file, line, fmt::format("column {}: '{}' is not {}", column, cell, expected)));
+  return fail(file_error(file, line, formatted("column {}: '{}' is not {}", column, cell, expected)));
 }
 
 std::optional<std::uint16_t> parse_code(std::string_view text) {
@@ -124,8 +124,8 @@ std::size_t place(std::uint8_t byte) { return byte - 3U; }
 std::string panel_text(const EmergencyRules& rules, const std::array<std::uint8_t, 5>& vendor) {
   const auto pattern = pattern_of(rules.panel);
   if (!pattern) return {};
-  return fmt::format("{}{:02}{}{:x}{}", pattern->before, vendor[place(rules.major_byte)], pattern->between,
-                     vendor[place(rules.minor_byte)], pattern->after);
+  return formatted("{}{:02}{}{:x}{}", pattern->before, vendor[place(rules.major_byte)], pattern->between,
+                   vendor[place(rules.minor_byte)], pattern->after);
 }
 
 std::array<std::uint8_t, 5> panel_bytes(const EmergencyRules& rules, std::string_view panel) {

@@ -1,7 +1,7 @@
 // The words that stand for values.
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/quantity.hpp"
@@ -56,7 +56,7 @@ const od::EnumLabel* label_of(const Meaning& meaning, const od::Value& value) {
 
 std::string labels_text(const std::vector<od::EnumLabel>& labels) {
   std::string out;
-  for (const auto& label : labels) append(out, fmt::format("{} {}", label.value, label.label));
+  for (const auto& label : labels) append(out, formatted("{} {}", label.value, label.label));
   return out;
 }
 

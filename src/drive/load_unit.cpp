@@ -1,9 +1,9 @@
 #include "drive/load_unit.hpp"
 
-#include <fmt/format.h>
 #include <array>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/unit.hpp"
@@ -28,15 +28,15 @@ constexpr std::array<std::string_view, 3> kPerTime{"", "/s", "/s2"};
 Result<LoadUnit> parse_load_unit(std::string_view text, double gear) {
   const auto given = split_unit(trim(text));
   if (!given)
-    return fail(Errc::usage, fmt::format("'{}' is not a number with the load's unit", trim(text)),
+    return fail(Errc::usage, formatted("'{}' is not a number with the load's unit", trim(text)),
                 "write how far the load moves in one turn of the gear's output: \"20 mm\"");
   const auto [number, unit] = *given;
   for (const auto own : {"rev", "rpm", "rev/s2", "inc", "%", "Nm", "s", "Hz", "V", "A", "W", "degC"})
     if (conversion(unit, own))
-      return fail(Errc::usage, fmt::format("'{}' is a unit of the motor or of time", unit),
+      return fail(Errc::usage, formatted("'{}' is a unit of the motor or of time", unit),
                   "a rotating load needs a unit of another name: \"360 tabledeg\"");
   if (number == 0 || unit.find_first_of("/ ,;=\"'") != std::string_view::npos)
-    return fail(Errc::usage, fmt::format("'{}' is not a distance of the load", trim(text)),
+    return fail(Errc::usage, formatted("'{}' is not a distance of the load", trim(text)),
                 "such as \"20 mm\"; -20 for a load that runs the other way");
   return LoadUnit{std::string(unit), number / gear};
 }
@@ -52,7 +52,7 @@ std::optional<std::string> in_revolutions(const LoadUnit& load, std::string_view
     const auto to = length(load.unit);
     if (what != load.unit && (!from || !to)) continue;
     const double ratio = what == load.unit ? 1 : *from / *to;
-    return fmt::format("{}rev{}", plain_number(number * ratio / load.per_rev, 15), per);
+    return formatted("{}rev{}", plain_number(number * ratio / load.per_rev, 15), per);
   }
   return std::nullopt;
 }
@@ -63,8 +63,8 @@ std::optional<std::string> size_in_revolutions(const LoadUnit& load, std::string
 
 std::optional<LoadValue> of_load(const LoadUnit& load, double value, std::string_view unit) {
   for (const auto per : kPerTime)
-    if (const auto revolutions = conversion(unit, fmt::format("rev{}", per)))
-      return LoadValue{value * *revolutions * load.per_rev, fmt::format("{}{}", load.unit, per)};
+    if (const auto revolutions = conversion(unit, formatted("rev{}", per)))
+      return LoadValue{value * *revolutions * load.per_rev, formatted("{}{}", load.unit, per)};
   return std::nullopt;
 }
 

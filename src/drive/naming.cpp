@@ -1,9 +1,9 @@
 #include "drive/naming.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/folded.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::drive {
@@ -53,7 +53,7 @@ std::string near_in_chinese(const Profile& profile, std::string_view text, bool 
   if (objects)
     for (const auto& object : profile.dictionary.objects())
       for (const auto& entry : object.entries) look_at(entry.name_zh);
-  return near.empty() ? std::string() : fmt::format("did you mean {}?", one_of(near));
+  return near.empty() ? std::string() : formatted("did you mean {}?", one_of(near));
 }
 
 tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
@@ -63,7 +63,7 @@ tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
     hint = profile.parameters.empty()
                ? "`objects PATTERN` finds names; an index is written 0x6041 or 6041h"
                : "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
-  return fail(Errc::usage, fmt::format("'{}' is not an object or parameter of {}", text, profile.family),
+  return fail(Errc::usage, formatted("'{}' is not an object or parameter of {}", text, profile.family),
               std::move(hint));
 }
 
@@ -71,7 +71,7 @@ tl::unexpected<Error> ambiguous(std::string_view text, const std::vector<std::st
   const std::vector<std::string> shown(
       meanings.begin(),
       meanings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(meanings.size(), 6)));
-  return fail(Errc::usage, fmt::format("'{}' is ambiguous: {} meanings", text, meanings.size()),
+  return fail(Errc::usage, formatted("'{}' is ambiguous: {} meanings", text, meanings.size()),
               "write " + one_of(shown) + (shown.size() < meanings.size() ? ", …" : ""));
 }
 
@@ -140,7 +140,7 @@ std::vector<const od::Parameter*> parameters_named(const Profile& profile, std::
 }
 
 tl::unexpected<Error> without_object(const od::Parameter& parameter) {
-  return fail(Errc::usage, fmt::format("{} has no CANopen object", parameter.id + " " + parameter.name),
+  return fail(Errc::usage, formatted("{} has no CANopen object", parameter.id + " " + parameter.name),
               "it can be changed only on the panel; `param explain` describes it");
 }
 
@@ -239,13 +239,13 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
   for (const auto* parameter : named) known.push_back(parameter->id);
   if (named.size() > 1) return ambiguous(text, known);
   for (const auto& parameter : profile.parameters) known.push_back(parameter.id);
-  auto hint = profile.parameters.empty() ? fmt::format("{} has no panel parameter table", profile.family)
+  auto hint = profile.parameters.empty() ? formatted("{} has no panel parameter table", profile.family)
               : is_ascii(text)           ? did_you_mean(text, known)
                                          : near_in_chinese(profile, text, false);
   if (hint.empty())
-    hint = fmt::format("`param list -d {0}` shows all, `param search WORD -d {0}` finds them by name",
-                       profile.family);
-  return fail(Errc::usage, fmt::format("'{}' is not a panel parameter of {}", text, profile.family),
+    hint = formatted("`param list -d {0}` shows all, `param search WORD -d {0}` finds them by name",
+                     profile.family);
+  return fail(Errc::usage, formatted("'{}' is not a panel parameter of {}", text, profile.family),
               std::move(hint));
 }
 
@@ -259,8 +259,7 @@ Result<Target> resolve_panel(const Profile& profile, std::string_view text) {
 Result<Target> resolve(const Profile* profile, std::string_view text) {
   if (const auto address = parse_object_address(text)) return target_at(profile, *address);
   if (profile == nullptr)
-    return fail(Errc::usage,
-                fmt::format("'{}' is not an object address, and names need a drive family", text),
+    return fail(Errc::usage, formatted("'{}' is not an object address, and names need a drive family", text),
                 "write an address such as 0x6041 or 0x6099:1, or add -d FAMILY (`drives` lists them)");
   if (const auto* parameter = profile->parameter(text)) {
     if (!parameter->object) return without_object(*parameter);

@@ -1,5 +1,6 @@
 #include "drive/pdo_recipe.hpp"
 
+#include "base/format.hpp"
 #include "drive/pdo_recipe_reader.hpp"
 #include "drive/toml_depth.hpp"
 
@@ -40,7 +41,7 @@ Result<void> read_recipes(const toml::array& list, std::string_view file, std::v
     const auto* table = each.as_table();
     if (table == nullptr)
       return fail(
-          file_error(file, at.line, at.column, fmt::format("a PDO cannot be {}", value_in_words(each))));
+          file_error(file, at.line, at.column, formatted("a PDO cannot be {}", value_in_words(each))));
     const TableReader reader(*table, file);
     out.emplace_back().line = at.line;
     if (const auto read = read_recipe(reader, out.back()); !read) return read;
@@ -73,7 +74,7 @@ Result<PdoFile> parse_pdo_file(std::string_view toml, std::string_view file) {
   if (inner) return fail(*inner);
   if (!done) return fail(done.error());
   if (format == 0)
-    return fail(Errc::file, fmt::format("{}: 'format' is missing", file), "begin the file with format = 1");
+    return fail(Errc::file, formatted("{}: 'format' is missing", file), "begin the file with format = 1");
   return out;
 }
 

@@ -1,11 +1,11 @@
 #include "drive/profile.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <system_error>
 #include <utility>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/family_files.hpp"
 #include "drive/profile_sheet.hpp"
@@ -103,11 +103,11 @@ Result<Profile> load_parent(const Family& family, std::span<const fs::path> fold
   if (parent.empty()) return Profile{};
   if (ancestors == kMostAncestors)
     return fail(Errc::file,
-                fmt::format("{}: its parents form a loop (parent = \"{}\")", path.string(), parent));
+                formatted("{}: its parents form a loop (parent = \"{}\")", path.string(), parent));
   auto loaded = load_family(parent, folders, ancestors + 1);
   if (!loaded)
     return fail(loaded.error().code == Errc::refused ? Errc::refused : Errc::file,
-                fmt::format("{}: parent: {}", path.string(), loaded.error().message), loaded.error().hint);
+                formatted("{}: parent: {}", path.string(), loaded.error().message), loaded.error().hint);
   return loaded;
 }
 
@@ -246,7 +246,7 @@ Result<Profile> load_family(std::string_view family, std::span<const fs::path> f
             ? std::string(
                   "no drive data was found: set SERVOCTL_DRIVES to its folder, or name an .eds or .xml file")
             : "known families: " + one_of(names) + "; or name an .eds or .xml file";
-  return fail(Errc::usage, fmt::format("no drive family is called '{}'", family), std::move(hint));
+  return fail(Errc::usage, formatted("no drive family is called '{}'", family), std::move(hint));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "drive/profile_sheet.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "drive/file_identity.hpp"
 #include "drive/standard_objects.hpp"
 #include "od/data_sheet.hpp"
@@ -73,8 +73,8 @@ Result<void> add_sheet(Profile& profile, const std::string& word) {
   take_sheet(profile, *file);
   profile.data_sheet = word;
   if (!file->diagnostics.empty())
-    profile.warnings.push_back(fmt::format("{0}: {1} errors, {2} warnings; `eds check {0}` lists them", word,
-                                           file->error_count(), file->warning_count()));
+    profile.warnings.push_back(formatted("{0}: {1} errors, {2} warnings; `eds check {0}` lists them", word,
+                                         file->error_count(), file->warning_count()));
   return {};
 }
 

@@ -1,9 +1,9 @@
 #include "drive/provenance.hpp"
 
-#include <fmt/format.h>
 #include <filesystem>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/family_files.hpp"
 #include "drive/profile.hpp"
@@ -54,10 +54,10 @@ std::string provenance_text(const Profile& profile, bool chinese) {
   const auto& manual = chinese && !known.manual_zh.empty() ? known.manual_zh : known.manual;
   std::string tried;
   for (const auto& drive : known.drives)
-    append(tried, fmt::format("{} with firmware {} ({})", drive.model, drive.firmware, drive.date));
-  if (!tried.empty()) return fmt::format("{}; tried on {}", manual, tried);
-  return known.simulator ? fmt::format("{} and the simulated drive; no real drive yet", manual)
-                         : fmt::format("{}; no real drive yet", manual);
+    append(tried, formatted("{} with firmware {} ({})", drive.model, drive.firmware, drive.date));
+  if (!tried.empty()) return formatted("{}; tried on {}", manual, tried);
+  return known.simulator ? formatted("{} and the simulated drive; no real drive yet", manual)
+                         : formatted("{}; no real drive yet", manual);
 }
 
 }  // namespace servoctl::drive

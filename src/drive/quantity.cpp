@@ -1,9 +1,9 @@
 #include "drive/quantity.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/pdo_index.hpp"
 #include "base/text.hpp"
@@ -21,7 +21,7 @@ constexpr double kWhole = 1e-3;
 /// The double nearest to the decimal number with so many significant digits: takes the noise of 400 × 0.1
 /// away.
 double tidy(double value, int digits = 12) {
-  return parse_real(fmt::format("{:.{}g}", value, digits)).value_or(value);
+  return parse_real(formatted("{:.{}g}", value, digits)).value_or(value);
 }
 
 /// How many of the object's own unit the given unit is; by the drive's own measure where there is one.
@@ -35,20 +35,20 @@ std::optional<double> in_own_unit(const Meaning& meaning, std::string_view unit)
 tl::unexpected<Error> inconvertible(const Meaning& meaning, const NumberWithUnit& given,
                                     std::string_view text) {
   if (meaning.unit.empty())
-    return fail(Errc::usage, fmt::format("'{}' carries a unit, but this object has none", text),
+    return fail(Errc::usage, formatted("'{}' carries a unit, but this object has none", text),
                 "write the plain number");
-  auto hint = fmt::format("write a value in {} or the raw number", meaning.unit);
+  auto hint = formatted("write a value in {} or the raw number", meaning.unit);
   if (meaning.measure && !meaning.bridge) hint += "; its scale could not be read from the drive";
   return fail(Errc::usage,
-              fmt::format("'{}': the unit of this object is {}; {} cannot be converted to it", text,
-                          meaning.unit, given.unit),
+              formatted("'{}': the unit of this object is {}; {} cannot be converted to it", text,
+                        meaning.unit, given.unit),
               std::move(hint));
 }
 
 enum class Steps : std::uint8_t { exact, nearest };
 
 tl::unexpected<Error> too_large(std::string_view text) {
-  return fail(Errc::usage, fmt::format("'{}' is too large for this object", text));
+  return fail(Errc::usage, formatted("'{}' is too large for this object", text));
 }
 
 /// A number that an object carries encoded; it has fewer digits than the number.
@@ -81,13 +81,13 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
   const double nearest = std::clamp(whole, bound(meaning.min, whole), bound(meaning.max, whole));
   if (steps == Steps::exact && std::abs(raw - whole) > kWhole)
     return fail(Errc::usage,
-                fmt::format("'{}' is {} steps of {} {}, not a whole number", text, plain_number(raw, 9),
-                            plain_number(meaning.scale, 6), meaning.unit),
-                fmt::format("the nearest value is {} {}", plain_number(tidy(nearest * step), 9), given.unit));
+                formatted("'{}' is {} steps of {} {}, not a whole number", text, plain_number(raw, 9),
+                          plain_number(meaning.scale, 6), meaning.unit),
+                formatted("the nearest value is {} {}", plain_number(tidy(nearest * step), 9), given.unit));
   const auto rounding =
       judge_rounding({given.number, tidy(whole * step), std::abs(step), std::string(given.unit)});
   if (!rounding) return fail(rounding.error());
-  const auto value = od::parse_value(meaning.type, fmt::format("{:.0f}", whole));
+  const auto value = od::parse_value(meaning.type, formatted("{:.0f}", whole));
   if (!value) return fail(value.error());
   return Quantity{*value, *rounding};
 }
@@ -131,7 +131,7 @@ std::size_t hex_digits(const Meaning& meaning, std::uint64_t word) {
 
 std::string plain_text(const Meaning& meaning, const od::Value& value) {
   if (const auto* word = std::get_if<std::uint64_t>(&value); word != nullptr && meaning.bits)
-    return fmt::format("0x{:0{}X}", *word, hex_digits(meaning, *word));
+    return formatted("0x{:0{}X}", *word, hex_digits(meaning, *word));
   return meaning.encoding == od::Encoding::plain ? od::to_string(value)
                                                  : plain_number(scaled(meaning, value), 12);
 }
@@ -199,15 +199,15 @@ Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
   if (meaning.labels != nullptr)
     hint = "values: " + labels_text(*meaning.labels);
   else if (meaning.scale != 1)
-    hint = fmt::format("one step is {} {}", plain_number(meaning.scale, 6), meaning.unit);
+    hint = formatted("one step is {} {}", plain_number(meaning.scale, 6), meaning.unit);
   else if (is_too_little(meaning, value))
-    hint = fmt::format(
+    hint = formatted(
         "0 switches it off{}",
         meaning.least_assumed
-            ? fmt::format("; the minimum {} is assumed: the manual may mean the step size", *meaning.least)
+            ? formatted("; the minimum {} is assumed: the manual may mean the step size", *meaning.least)
             : std::string());
   return fail(Errc::usage,
-              fmt::format("{} is out of range: {}", plain_text(meaning, value), range_text(meaning)),
+              formatted("{} is out of range: {}", plain_text(meaning, value), range_text(meaning)),
               std::move(hint));
 }
 
@@ -215,7 +215,7 @@ namespace {
 
 Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps) {
   if (const auto* label = find_label(meaning, text)) {
-    const auto value = od::parse_value(meaning.type, fmt::format("{}", label->value));
+    const auto value = od::parse_value(meaning.type, formatted("{}", label->value));
     if (!value) return fail(value.error());
     return Quantity{*value, {}};
   }
@@ -226,7 +226,7 @@ Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps
     if (const auto physical = split_unit(text)) return from_physical(meaning, *physical, text, steps);
   const auto plain = od::parse_value(meaning.type, text);
   if (!plain && meaning.labels != nullptr && !parse_integer(text))
-    return fail(Errc::usage, fmt::format("'{}' is not a value of this object", text),
+    return fail(Errc::usage, formatted("'{}' is not a value of this object", text),
                 "values: " + labels_text(*meaning.labels));
   if (!plain) return fail(plain.error());
   return Quantity{*plain, {}};
@@ -263,7 +263,7 @@ double scaled(const Meaning& meaning, const od::Value& value) {
     return meaning.scale == 1 ? raw : tidy(raw * meaning.scale);
   }
   const double number = od::decode_number(meaning.encoding, value) * meaning.scale;
-  return parse_real(fmt::format("{}", static_cast<float>(number))).value_or(number);
+  return parse_real(formatted("{}", static_cast<float>(number))).value_or(number);
 }
 
 std::optional<Familiar> familiar(const Meaning& meaning, const od::Value& value) {
@@ -282,10 +282,10 @@ bool is_too_little(const Meaning& meaning, const od::Value& value) {
 
 std::string range_text(const Meaning& meaning) {
   if (meaning.least && meaning.max)
-    return fmt::format("0, or {}..{}", *meaning.least, plain_text(meaning, *meaning.max));
-  if (meaning.least) return fmt::format("0, or at least {}", *meaning.least);
+    return formatted("0, or {}..{}", *meaning.least, plain_text(meaning, *meaning.max));
+  if (meaning.least) return formatted("0, or at least {}", *meaning.least);
   if (meaning.min && meaning.max)
-    return fmt::format("{}..{}", plain_text(meaning, *meaning.min), plain_text(meaning, *meaning.max));
+    return formatted("{}..{}", plain_text(meaning, *meaning.min), plain_text(meaning, *meaning.max));
   if (meaning.min) return "at least " + plain_text(meaning, *meaning.min);
   if (meaning.max) return "at most " + plain_text(meaning, *meaning.max);
   return {};

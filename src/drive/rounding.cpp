@@ -1,7 +1,7 @@
 // What a number loses in an object that holds whole steps.
-#include <fmt/format.h>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/quantity.hpp"
 
@@ -9,7 +9,7 @@ namespace servoctl::drive {
 namespace {
 
 std::string with_unit(double number, const std::string& unit) {
-  return fmt::format("{}{}{}", plain_number(number, 6), unit.empty() ? "" : " ", unit);
+  return formatted("{}{}{}", plain_number(number, 6), unit.empty() ? "" : " ", unit);
 }
 
 }  // namespace
@@ -19,8 +19,8 @@ std::string to_string(const Rounding& rounding) {
   const auto asked = with_unit(rounding.asked, unit);
   const auto held = with_unit(rounding.held, unit);
   return rounding.step == 0
-             ? fmt::format("{} is held as {}", asked, held)
-             : fmt::format("{} is {}: one step is {}", asked, held, with_unit(rounding.step, unit));
+             ? formatted("{} is held as {}", asked, held)
+             : formatted("{} is {}: one step is {}", asked, held, with_unit(rounding.step, unit));
 }
 
 Result<std::optional<Rounding>> judge_rounding(const Rounding& rounding) {
@@ -32,12 +32,12 @@ Result<std::optional<Rounding>> judge_rounding(const Rounding& rounding) {
   const auto asked = with_unit(rounding.asked, unit);
   const auto held = with_unit(rounding.held, unit);
   if (rounding.step == 0)
-    return fail(Errc::usage, fmt::format("{} would become {}: out of range for this object", asked, held));
+    return fail(Errc::usage, formatted("{} would become {}: out of range for this object", asked, held));
   const double below = std::floor(rounding.asked / rounding.step) * rounding.step;
   return fail(Errc::usage,
-              fmt::format("{} would become {}: one step is {}", asked, held, with_unit(rounding.step, unit)),
-              fmt::format("the nearest values are {} and {}", with_unit(below, unit),
-                          with_unit(below + rounding.step, unit)));
+              formatted("{} would become {}: one step is {}", asked, held, with_unit(rounding.step, unit)),
+              formatted("the nearest values are {} and {}", with_unit(below, unit),
+                        with_unit(below + rounding.step, unit)));
 }
 
 }  // namespace servoctl::drive

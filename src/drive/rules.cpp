@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/provenance.hpp"
@@ -57,7 +58,7 @@ class RulesReader {
     if (inner_) return fail(*inner_);
     if (!done) return fail(done.error());
     if (format == 0 || rules_.family.empty())
-      return fail(Errc::file, fmt::format("{}: 'format' or 'family' is missing", file_),
+      return fail(Errc::file, formatted("{}: 'format' or 'family' is missing", file_),
                   "begin the file with format = 1 and family = \"NAME\"");
     return std::move(rules_);
   }

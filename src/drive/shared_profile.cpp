@@ -1,6 +1,5 @@
 #include "drive/shared_profile.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -8,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::drive {
@@ -47,7 +47,7 @@ Result<std::shared_ptr<const Read>> known_or(std::string key, const Load& load) 
 std::string state_of(const fs::path& file) {
   std::error_code gone;
   const auto time = fs::last_write_time(file, gone).time_since_epoch().count();
-  return fmt::format("\n{} {} {}", file.filename().string(), time, fs::file_size(file, gone));
+  return formatted("\n{} {} {}", file.filename().string(), time, fs::file_size(file, gone));
 }
 
 /// What tells the files of a family from what they were before they were changed.

@@ -1,8 +1,9 @@
 #include "drive/toml_depth.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
+
+#include "base/format.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -85,7 +86,7 @@ Result<void> check_toml_depth(std::string_view toml, std::string_view file) {
     if (!depth.is_too_deep()) continue;
     const auto line = static_cast<std::uint32_t>(depth.line());
     auto error =
-        fail(Errc::file, fmt::format("{}:{}: tables are nested deeper than {} levels", file, line, kDeepest))
+        fail(Errc::file, formatted("{}:{}: tables are nested deeper than {} levels", file, line, kDeepest))
             .value();
     error.line = line;
     return fail(std::move(error));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <fmt/format.h>
 #include <functional>
 #include <map>
 #include <optional>
@@ -20,6 +19,7 @@
 #define TOML_ASSERT(expression) static_cast<void>(0)
 #include <toml++/toml.h>
 
+#include "base/format.hpp"
 #include "base/object_address.hpp"
 #include "base/result.hpp"
 #include "base/text.hpp"
@@ -105,11 +105,11 @@ inline const toml::node& at(const toml::node& node, std::string_view key) {
 inline std::string value_in_words(const toml::node& node) {
   constexpr std::size_t kMost = 40;
   std::string text;
-  if (const auto whole = node.value_exact<std::int64_t>()) return fmt::format("{}", *whole);
-  if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
+  if (const auto whole = node.value_exact<std::int64_t>()) return formatted("{}", *whole);
+  if (const auto number = node.value_exact<double>()) return formatted("{}", *number);
   if (const auto flag = node.value_exact<bool>()) return *flag ? "true" : "false";
   if (get(node, text))
-    return text.size() > kMost ? fmt::format("a text of {} bytes", text.size()) : fmt::format("\"{}\"", text);
+    return text.size() > kMost ? formatted("a text of {} bytes", text.size()) : formatted("\"{}\"", text);
   return node.is_table() ? "a table" : node.is_array() ? "this list" : "a date or time";
 }
 
@@ -129,9 +129,9 @@ class TableReader {
       const auto handler = handlers.find(std::string_view(key.str()));
       if (handler == handlers.end()) return unknown(key, handlers);
       if (handler->second(node)) continue;
-      auto error = fail_at(node, fmt::format("'{}' cannot be {}", key.str(), value_in_words(node))).value();
+      auto error = fail_at(node, formatted("'{}' cannot be {}", key.str(), value_in_words(node))).value();
       if (const auto form = forms.find(handler->first); form != forms.end())
-        error.hint = fmt::format("write {}", form->second);
+        error.hint = formatted("write {}", form->second);
       return fail(std::move(error));
     }
     return {};
@@ -149,7 +149,7 @@ class TableReader {
 
   tl::unexpected<Error> unknown(const toml::key& key, const Handlers& handlers) const {
     const auto at = key.source().begin;
-    auto error = file_error(file_, at.line, at.column, fmt::format("unknown key '{}'", key.str()));
+    auto error = file_error(file_, at.line, at.column, formatted("unknown key '{}'", key.str()));
     std::vector<std::string> known;
     for (const auto& handler : handlers) known.emplace_back(handler.first);
     error.hint = did_you_mean(key.str(), known);

@@ -1,11 +1,11 @@
 // `<family>.topics.toml`, key by key.
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <set>
 #include <tuple>
 
 #include "base/folded.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/toml_depth.hpp"
 #include "drive/toml_reader.hpp"
@@ -31,8 +31,7 @@ class TopicsReader {
     if (inner_) return fail(*inner_);
     if (!done) return fail(done.error());
     if (format == 0)
-      return fail(Errc::file, fmt::format("{}: 'format' is missing", file_),
-                  "begin the file with format = 1");
+      return fail(Errc::file, formatted("{}: 'format' is missing", file_), "begin the file with format = 1");
     for (auto& topic : topics_) give_words(topic);
     return std::move(topics_);
   }
@@ -150,7 +149,7 @@ class TopicsReader {
       return done;
     if (out.cells.size() != columns)
       return reader.fail_at(table,
-                            fmt::format("a row of {} 'cells' under {} 'columns'", out.cells.size(), columns));
+                            formatted("a row of {} 'cells' under {} 'columns'", out.cells.size(), columns));
     if (out.line.empty()) return reader.fail_at(table, "a row without 'line'");
     if (out.text.empty() != out.text_zh.empty())
       return reader.fail_at(table, "a row has both 'text' and 'text_zh', or neither");
@@ -160,16 +159,15 @@ class TopicsReader {
   Result<void> check(const toml::table& table, const Topic& topic) {
     const TableReader reader(table, file_);
     const auto wrong = [&](const std::string& what) {
-      return reader.fail_at(table,
-                            topic.name.empty() ? what : fmt::format("topic '{}': {}", topic.name, what));
+      return reader.fail_at(table, topic.name.empty() ? what : formatted("topic '{}': {}", topic.name, what));
     };
     for (const auto& [key, value] :
          {std::pair("kind", &topic.kind), std::pair("name", &topic.name), std::pair("title", &topic.title),
           std::pair("title_zh", &topic.title_zh), std::pair("line", &topic.line)})
-      if (trim(*value).empty()) return wrong(fmt::format("'{}' is missing", key));
+      if (trim(*value).empty()) return wrong(formatted("'{}' is missing", key));
     for (const auto& [key, one, other] :
          {std::tuple("text", &topic.text, &topic.text_zh), std::tuple("note", &topic.note, &topic.note_zh)})
-      if (one->empty() != other->empty()) return wrong(fmt::format("'{0}' and '{0}_zh' go together", key));
+      if (one->empty() != other->empty()) return wrong(formatted("'{0}' and '{0}_zh' go together", key));
     if (topic.text.empty() && topic.rows.empty() && topic.picture.empty())
       return wrong("it says nothing: 'text', 'rows' or 'picture' is missing");
     if (topic.value && !topic.object) return wrong("'value' needs 'object'");
@@ -177,7 +175,7 @@ class TopicsReader {
     if (topic.columns.empty() != topic.rows.empty()) return wrong("'columns' and 'rows' go together");
     if (topic.columns_zh.size() != topic.columns.size())
       return wrong(
-          fmt::format("{} 'columns', but {} 'columns_zh'", topic.columns.size(), topic.columns_zh.size()));
+          formatted("{} 'columns', but {} 'columns_zh'", topic.columns.size(), topic.columns_zh.size()));
     return {};
   }
 

@@ -1,7 +1,6 @@
 #include "drive/word_bits.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/cia402.hpp"
 
@@ -47,7 +46,7 @@ std::string in_language(std::string_view word, Chinese chinese) {
 
 std::string bit_number(unsigned bit, Chinese chinese) {
   const auto format = in_language("bit {}", chinese);
-  return fmt::vformat(format, fmt::make_format_args(bit));
+  return formatted_of(format, fmt::make_format_args(bit));
 }
 
 void add_bit(std::string& bits, const std::string& bit, Chinese chinese) {
@@ -56,7 +55,7 @@ void add_bit(std::string& bits, const std::string& bit, Chinese chinese) {
 
 std::string in_brackets(const std::string& head, const std::string& rest, Chinese chinese) {
   if (rest.empty()) return head;
-  return chinese != nullptr ? head + "（" + rest + "）" : fmt::format("{} ({})", head, rest);
+  return chinese != nullptr ? head + "（" + rest + "）" : formatted("{} ({})", head, rest);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "ethercat/al_request.hpp"
 
-#include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "ethercat/registers.hpp"
 
 namespace servoctl::ethercat {
@@ -95,15 +95,14 @@ void AlRequest::on_status(AlStatus status, TimePoint now) {
 
 void AlRequest::wait_on(AlStatus status, TimePoint now) {
   if (status.error)
-    return finish(
-        fail(error(Errc::negative,
-                   fmt::format("{} refused, state is {}: {} (AL status code {:04X}h)", name(target_),
-                               name(status.state), al_status_text(status.code), status.code),
-                   al_status_hint(status.code))));
+    return finish(fail(error(Errc::negative,
+                             formatted("{} refused, state is {}: {} (AL status code {:04X}h)", name(target_),
+                                       name(status.state), al_status_text(status.code), status.code),
+                             al_status_hint(status.code))));
   if (status.state == target_) return finish(status);
   if (now < until_) return go(State::wait, now, kPoll);
   finish(fail(error(
-      Errc::timeout, fmt::format("{} was requested, state is still {}", name(target_), name(status.state)),
+      Errc::timeout, formatted("{} was requested, state is still {}", name(target_), name(status.state)),
       "it may need more time, or something from the master: process data for OP, settings for SAFE-OP")));
 }
 

@@ -1,9 +1,9 @@
 #include "ethercat/coe_client.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_frame.hpp"
 #include "ethercat/coe_abort.hpp"
@@ -65,7 +65,7 @@ void CoeClient::start_download(ObjectAddress object, Bytes data, TimePoint now, 
   const bool fits = !data_.empty() && data_.size() <= 4;
   if (transfer == Transfer::expedited && !fits)
     return finish(
-        fail(error(Errc::usage, fmt::format("{} bytes do not fit into one expedited message", data_.size()),
+        fail(error(Errc::usage, formatted("{} bytes do not fit into one expedited message", data_.size()),
                    "leave --transfer expedited out")));
   core_.ask_write(object, data_, now);
   const auto access = complete ? kCompleteAccess : 0U;
@@ -108,7 +108,7 @@ void CoeClient::on_abort(ByteSpan message) {
   if (sdo_object(message) != object_) return core_.note(command(message), sdo_object(message), code);
   const bool writes = state_ != State::upload_initiate && state_ != State::upload_segment;
   auto refused =
-      error(Errc::sdo_abort, fmt::format("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
+      error(Errc::sdo_abort, formatted("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
             coe_abort_hint(code, object_, writes));
   refused.abort_code = code;
   finish(fail(std::move(refused)));
@@ -117,10 +117,10 @@ void CoeClient::on_abort(ByteSpan message) {
 void CoeClient::on_upload_initiate(ByteSpan message, TimePoint now) {
   if (message.size() < kInitiate)
     return abort(sdo_abort::kCommand, Errc::protocol,
-                 fmt::format("its answer has {} bytes instead of {}", message.size(), kInitiate));
+                 formatted("its answer has {} bytes instead of {}", message.size(), kInitiate));
   if (specifier(message) != 0x40)
     return abort(sdo_abort::kCommand, Errc::protocol,
-                 fmt::format("it answered a read with command 0x{:02X}", command(message)));
+                 formatted("it answered a read with command 0x{:02X}", command(message)));
   if ((command(message) & 0x02U) != 0) return on_expedited(message);
   if (transfer_ == Transfer::expedited)
     return abort(sdo_abort::kUnsupportedAccess, Errc::protocol,
@@ -129,7 +129,7 @@ void CoeClient::on_upload_initiate(ByteSpan message, TimePoint now) {
   announced_ = (command(message) & 0x01U) != 0 ? sdo_data(message) : came.size();
   if (announced_ > canopen::kMaxSdoUpload)
     return abort(sdo_abort::kOutOfMemory, Errc::protocol,
-                 fmt::format("it announces {} bytes for this object", *announced_));
+                 formatted("it announces {} bytes for this object", *announced_));
   // What is behind the data is not the object's.
   const auto size = std::min(came.size(), *announced_);
   data_.reserve(*announced_);
@@ -150,7 +150,7 @@ void CoeClient::on_upload_segment(ByteSpan message, TimePoint now) {
     return;  // The first answer, twice.
   if (specifier(message) != 0x00)
     return abort(sdo_abort::kCommand, Errc::protocol,
-                 fmt::format("it answered a segment request with command 0x{:02X}", command(message)));
+                 formatted("it answered a segment request with command 0x{:02X}", command(message)));
   if ((command(message) & kToggleBit) != toggle_)
     return abort(sdo_abort::kToggle, Errc::protocol, "the toggle bit of its segment did not alternate");
   const bool last = (command(message) & 0x01U) != 0;
@@ -163,8 +163,8 @@ void CoeClient::on_upload_segment(ByteSpan message, TimePoint now) {
   data_.insert(data_.end(), came.begin(), came.end());
   if (came.size() > missing || (last ? came.size() < missing : came.empty() || came.size() == missing))
     return abort(sdo_abort::kLength, Errc::protocol,
-                 fmt::format("it announced {} bytes and sent {}{}", *announced_, data_.size(),
-                             last ? "" : " and has more"));
+                 formatted("it announced {} bytes and sent {}{}", *announced_, data_.size(),
+                           last ? "" : " and has more"));
   if (last) return finish(std::exchange(data_, {}));
   toggle_ ^= kToggleBit;
   request_segment(now);
@@ -173,10 +173,10 @@ void CoeClient::on_upload_segment(ByteSpan message, TimePoint now) {
 void CoeClient::on_download_initiate(ByteSpan message, TimePoint now) {
   if (message.size() < kInitiate)
     return abort(sdo_abort::kCommand, Errc::protocol,
-                 fmt::format("its answer has {} bytes instead of {}", message.size(), kInitiate));
+                 formatted("its answer has {} bytes instead of {}", message.size(), kInitiate));
   if (specifier(message) != 0x60)
     return abort(sdo_abort::kCommand, Errc::protocol,
-                 fmt::format("it answered a write with command 0x{:02X}", command(message)));
+                 formatted("it answered a write with command 0x{:02X}", command(message)));
   if (offset_ == data_.size()) return finish(Bytes{});
   send_segment(now);
 }
@@ -186,7 +186,7 @@ void CoeClient::on_download_segment(ByteSpan message, TimePoint now) {
     return;  // The first answer, twice.
   if (specifier(message) != 0x20)
     return abort(sdo_abort::kCommand, Errc::protocol,
-                 fmt::format("it answered a segment with command 0x{:02X}", command(message)));
+                 formatted("it answered a segment with command 0x{:02X}", command(message)));
   if ((command(message) & kToggleBit) != toggle_)
     return abort(sdo_abort::kToggle, Errc::protocol, "the toggle bit of its answer did not alternate");
   if (offset_ == data_.size()) return finish(Bytes{});
@@ -214,8 +214,8 @@ void CoeClient::on_refusal(std::uint16_t detail) {
   if (state_ == State::idle) return;
   finish(fail(error(
       Errc::protocol,
-      fmt::format("its mailbox refuses the request: {} (mailbox error {:04X}h)", mailbox_error_text(detail),
-                  detail),
+      formatted("its mailbox refuses the request: {} (mailbox error {:04X}h)", mailbox_error_text(detail),
+                detail),
       "some slaves accept no further transfer after one that was left open: `state init` and up again clears it")));
 }
 

@@ -1,8 +1,8 @@
 // Answers of the CoE client that come late, instead of the one that is waited for, or not at all.
-#include <fmt/format.h>
 #include <chrono>
 #include <utility>
 
+#include "base/format.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "canopen/sdo_frame.hpp"
 #include "ethercat/coe_client.hpp"
@@ -90,7 +90,7 @@ void CoeClient::on_time(TimePoint now) {
   const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(core_.timeout()).count();
   auto silence = core_.silence();
   abort(canopen::sdo_abort::kTimeout, silence.code,
-        fmt::format("no answer within {} ms{}", waited, silence.heard), std::move(silence.hint));
+        formatted("no answer within {} ms{}", waited, silence.heard), std::move(silence.hint));
 }
 
 }  // namespace servoctl::ethercat

@@ -1,8 +1,8 @@
 #include "ethercat/frame.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "ethercat/words.hpp"
 
 namespace servoctl::ethercat {
@@ -88,15 +88,15 @@ Result<void> FrameReader::check() {
   if (frame_.size() < kFrameHeader) return malformed("it ends before its header");
   const auto header = word_at(frame_, kLengthAt);
   const std::size_t length = header & kLengthMask;
-  if (header >> 12U != kDatagrams) return malformed(fmt::format("it is of type {}, not 1", header >> 12U));
+  if (header >> 12U != kDatagrams) return malformed(formatted("it is of type {}, not 1", header >> 12U));
   if (kFrameHeader + length > frame_.size())
-    return malformed(fmt::format("it announces {} bytes and has {}", length, frame_.size() - kFrameHeader));
+    return malformed(formatted("it announces {} bytes and has {}", length, frame_.size() - kFrameHeader));
   frame_ = frame_.first(kFrameHeader + length);
   for (std::size_t at = kFrameHeader;;) {
     if (at + kDatagramOverhead > frame_.size()) return malformed("a datagram begins beyond its end");
     const auto end = at + kDatagramOverhead + data_size(frame_, at);
     if (end > frame_.size())
-      return malformed(fmt::format("a datagram of {} bytes extends beyond its end", data_size(frame_, at)));
+      return malformed(formatted("a datagram of {} bytes extends beyond its end", data_size(frame_, at)));
     if ((word_at(frame_, at + 6) & kMoreFollow) == 0) return {};
     at = end;
   }

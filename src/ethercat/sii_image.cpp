@@ -1,8 +1,8 @@
 #include "ethercat/sii_image.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "ethercat/frame.hpp"
 #include "ethercat/registers.hpp"
 #include "ethercat/words.hpp"
@@ -44,7 +44,7 @@ class Parser {
 
   SiiImage parse() {
     if (image_.size() < 2 * kSiiHeader) {
-      doubt(fmt::format("it ends after {} bytes, before its first category", image_.size()));
+      doubt(formatted("it ends after {} bytes, before its first category", image_.size()));
       return std::move(out_);
     }
     // Identity and mailboxes say whether it was ever written; the words in front may be those of a chip.
@@ -69,8 +69,8 @@ class Parser {
   void header() {
     const auto expected = sii_checksum(image_.first(kConfiguration));
     if (image_[kConfiguration] != expected)
-      doubt(fmt::format("the checksum of its first words is {:02X}h and should be {:02X}h",
-                        image_[kConfiguration], expected));
+      doubt(formatted("the checksum of its first words is {:02X}h and should be {:02X}h",
+                      image_[kConfiguration], expected));
     out_.alias = word_at(image_, 0x08);
     out_.vendor = dword_at(image_, 0x10);
     out_.product = dword_at(image_, 0x14);
@@ -94,7 +94,7 @@ class Parser {
       if (type == 0 && size == 0) return doubt("its categories are not terminated");
       if (at + 4 + size > image_.size())
         return doubt(
-            fmt::format("its category {} announces {} bytes and has {}", type, size, image_.size() - at - 4));
+            formatted("its category {} announces {} bytes and has {}", type, size, image_.size() - at - 4));
       (this->*visit)(type, image_.subspan(at + 4, size));
       at += 4 + size;
     }
@@ -121,7 +121,7 @@ class Parser {
     std::size_t at = 1;
     for (std::size_t i = 0; i < count; ++i) {
       if (at >= data.size() || at + 1 + data[at] > data.size())
-        return doubt(fmt::format("it announces {} strings and has {}", count, i));
+        return doubt(formatted("it announces {} strings and has {}", count, i));
       const auto text = data.subspan(at + 1, data[at]);
       out_.strings.emplace_back(text.begin(), text.end());
       at += 1 + text.size();
@@ -159,8 +159,8 @@ class Parser {
       pdo.name = string_at(out_, data[5]);
       pdo.flags = word_at(data, 6);
       if (data.size() < 8 + 8 * count)
-        return doubt(fmt::format("its PDO {:04X}h announces {} entries and has {}", pdo.index, count,
-                                 data.size() / 8 - 1));
+        return doubt(formatted("its PDO {:04X}h announces {} entries and has {}", pdo.index, count,
+                               data.size() / 8 - 1));
       for (std::size_t i = 1; i <= count; ++i) {
         const auto row = data.subspan(8 * i, 8);
         pdo.entries.push_back({{word_at(row, 0), row[2]}, string_at(out_, row[3]), row[4], row[5]});
@@ -190,9 +190,9 @@ std::string SiiMailbox::doubt() const {
   const auto least = std::min(out_size, in_size);
   const auto most = std::max(out_size, in_size);
   if (least < kLeastMailbox)
-    return fmt::format("a mailbox has {} bytes, an SDO needs {}", least, kLeastMailbox);
+    return formatted("a mailbox has {} bytes, an SDO needs {}", least, kLeastMailbox);
   if (most > kMaxDatagramData)
-    return fmt::format("a mailbox has {} bytes, a frame holds {}", most, kMaxDatagramData);
+    return formatted("a mailbox has {} bytes, a frame holds {}", most, kMaxDatagramData);
   if (std::min(out_start, in_start) < reg::kProcessMemory) return "a mailbox overlaps the registers";
   const bool apart = out_start + out_size <= in_start || in_start + in_size <= out_start;
   return apart ? std::string() : "its mailboxes overlap";

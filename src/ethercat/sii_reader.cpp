@@ -1,9 +1,9 @@
 #include "ethercat/sii_reader.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "ethercat/registers.hpp"
 #include "ethercat/sii_image.hpp"
 #include "ethercat/words.hpp"
@@ -135,8 +135,7 @@ void SiiReader::on_fetched(ByteSpan data, TimePoint now) {
 }
 
 void SiiReader::on_error(TimePoint now) {
-  end(fail(error(Errc::protocol,
-                 fmt::format("the memory reports an error at word {:02X}h", image_.size() / 2),
+  end(fail(error(Errc::protocol, formatted("the memory reports an error at word {:02X}h", image_.size() / 2),
                  "is its memory fitted and programmed, and is no other master reading it?")),
       now);
 }

@@ -1,8 +1,8 @@
 #include "ethercat/slave_plan.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "ethercat/registers.hpp"
 
 namespace servoctl::ethercat {
@@ -87,10 +87,10 @@ Result<SlavePlan> plan_slave(std::uint8_t node, const ProcessArea& area, const P
     return fail(drive_error(Errc::usage, node, "the location of its process data is unknown",
                             "its SII lists no sync managers: name its family or its ESI file with -d"));
   if (out + in > kMaxDatagramData)
-    return fail(drive_error(
-        Errc::usage, node,
-        fmt::format("its process data have {} bytes, a frame holds {}", out + in, kMaxDatagramData),
-        "map fewer objects: `pdo map`"));
+    return fail(
+        drive_error(Errc::usage, node,
+                    formatted("its process data have {} bytes, a frame holds {}", out + in, kMaxDatagramData),
+                    "map fewer objects: `pdo map`"));
   const bool out_first = area.out_start < area.in_start;
   const auto room =
       static_cast<std::size_t>(out_first ? area.in_start - area.out_start : area.out_start - area.in_start);
@@ -98,8 +98,8 @@ Result<SlavePlan> plan_slave(std::uint8_t node, const ProcessArea& area, const P
   if (needed > room)
     return fail(
         drive_error(Errc::usage, node,
-                    fmt::format("its {} need {} bytes of its memory (three buffers), and {} are available",
-                                out_first ? "outputs" : "inputs", needed, room),
+                    formatted("its {} need {} bytes of its memory (three buffers), and {} are available",
+                              out_first ? "outputs" : "inputs", needed, room),
                     "map fewer objects: `pdo map`"));
   return SlavePlan{area, logical, static_cast<std::uint16_t>(out), static_cast<std::uint16_t>(in)};
 }

@@ -1,7 +1,6 @@
 #include "ethercat/sm_watchdog.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "ethercat/registers.hpp"
 
 namespace servoctl::ethercat {
@@ -25,8 +24,8 @@ Result<SmWatchdog> sm_watchdog(Duration time) {
   const auto steps = (time.count() + kStep - 1) / kStep;
   if (steps < 1 || steps > kMostSteps)
     return fail(Errc::usage,
-                fmt::format("a watchdog of {} ms cannot be set",
-                            std::chrono::duration<double, std::milli>(time).count()),
+                formatted("a watchdog of {} ms cannot be set",
+                          std::chrono::duration<double, std::milli>(time).count()),
                 "allowed: 0.1 ms to 6553.5 ms");
   return SmWatchdog{reg::kDefaultWatchdogDivider, static_cast<std::uint16_t>(steps)};
 }

@@ -1,12 +1,12 @@
 #include "ethernet/frame_limits.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl::ethernet {
 
 Result<void> check_frame(ByteSpan frame) {
   if (frame.size() >= kShortestFrame && frame.size() <= kLongestFrame) return {};
-  return fail(Errc::bug, fmt::format("a frame that cannot be sent: {} bytes", frame.size()));
+  return fail(Errc::bug, formatted("a frame that cannot be sent: {} bytes", frame.size()));
 }
 
 }  // namespace servoctl::ethernet

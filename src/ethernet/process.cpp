@@ -1,12 +1,12 @@
 #include "ethernet/process.hpp"
 
-#include <fmt/format.h>
 #include <sys/socket.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::ethernet {
@@ -17,7 +17,7 @@ constexpr std::size_t kCommandWidth = 60;
 /// Its command line; empty where that cannot be read.
 std::string command_of(::pid_t process) {
   constexpr std::uintmax_t kMostBytes = 64U << 10U;
-  auto words = read_file(fmt::format("/proc/{}/cmdline", process), kMostBytes).value_or("");
+  auto words = read_file(formatted("/proc/{}/cmdline", process), kMostBytes).value_or("");
   std::replace(words.begin(), words.end(), '\0', ' ');
   const auto line = trim(words);
   const auto program = line.substr(0, line.find(' '));
@@ -36,8 +36,7 @@ std::string command_of(::pid_t process) {
 std::string process_words(::pid_t process) {
   if (process <= 0) return "another process";
   const auto command = command_of(process);
-  return command.empty() ? fmt::format("process {}", process)
-                         : fmt::format("process {} ({})", process, command);
+  return command.empty() ? formatted("process {}", process) : formatted("process {} ({})", process, command);
 }
 
 }  // namespace servoctl::ethernet

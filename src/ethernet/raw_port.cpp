@@ -2,7 +2,6 @@
 
 #include <arpa/inet.h>
 #include <fcntl.h>
-#include <fmt/format.h>
 #include <linux/if_packet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -11,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "base/format.hpp"
 #include "base/signal_wait.hpp"
 #include "ethernet/interface.hpp"
 
@@ -49,7 +49,7 @@ Result<Descriptor> packet_socket(const std::string& name, int index) {
   Descriptor socket(::socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket && (errno == EPERM || errno == EACCES)) return no_right(name);
   if (!socket && errno == EAFNOSUPPORT)
-    return fail(Errc::bus, fmt::format("cannot open {}: no packet sockets in the kernel", name),
+    return fail(Errc::bus, formatted("cannot open {}: no packet sockets in the kernel", name),
                 "load them with `sudo modprobe af_packet`");
   if (!socket) return interface_cannot_open(name, errno);
   configure(socket.get());
@@ -71,7 +71,7 @@ struct Opened {
 
 /// By its index, so that all names of one interface are one wire.
 Result<WireLock> take_lock(const std::string& name, int index) {
-  return WireLock::take(fmt::format("interface-{}", index), name);
+  return WireLock::take(formatted("interface-{}", index), name);
 }
 
 Result<Opened> open_interface(const std::string& name) {

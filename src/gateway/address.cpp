@@ -4,8 +4,7 @@
 #include <netinet/in.h>
 #include <sys/un.h>
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -18,15 +17,13 @@ constexpr std::string_view kUrlForm =
     "a gateway is written gateway://HOST, gateway://HOST:60000, gateway://HOST/NET or gateway:/run/socket";
 
 tl::unexpected<Error> wrong(std::string_view text, std::string_view what, std::string_view form) {
-  return fail(Errc::usage, fmt::format("'{}' is not a place of a gateway: {}", text, what),
-              std::string(form));
+  return fail(Errc::usage, formatted("'{}' is not a place of a gateway: {}", text, what), std::string(form));
 }
 
 Result<Address> read_path(std::string_view text, std::string_view form) {
   if (text.size() >= sizeof(sockaddr_un::sun_path))
-    return wrong(text,
-                 fmt::format("a path of a socket has {} bytes at most", sizeof(sockaddr_un::sun_path) - 1),
-                 form);
+    return wrong(
+        text, formatted("a path of a socket has {} bytes at most", sizeof(sockaddr_un::sun_path) - 1), form);
   Address out;
   out.path = text;
   return out;
@@ -44,7 +41,7 @@ Result<Address> read_host(std::string_view text, std::string_view whole, std::st
   if (colon == std::string_view::npos) return out;
   const auto port = parse_digits(text.substr(colon + 1), 10);
   if (!port || *port == 0 || *port > 0xFFFF)
-    return wrong(whole, fmt::format("'{}' is no port", text.substr(colon + 1)), form);
+    return wrong(whole, formatted("'{}' is no port", text.substr(colon + 1)), form);
   out.port = static_cast<std::uint16_t>(*port);
   return out;
 }
@@ -61,8 +58,8 @@ bool Address::is_local() const {
 
 std::string Address::text() const {
   if (is_path()) return path;
-  return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port)
-                                             : fmt::format("[{}]:{}", host, port);
+  return host.find(':') == std::string::npos ? formatted("{}:{}", host, port)
+                                             : formatted("[{}]:{}", host, port);
 }
 
 Result<Address> parse_place(std::string_view text) {
@@ -79,7 +76,7 @@ Result<Address> parse_url(std::string_view text) {
   if (!out || slash == std::string_view::npos) return out;
   const auto network = parse_digits(rest.substr(slash + 1), 10);
   if (!network || *network == 0 || *network > 0xFFFF)
-    return wrong(text, fmt::format("'{}' is no number of a network", rest.substr(slash + 1)), kUrlForm);
+    return wrong(text, formatted("'{}' is no number of a network", rest.substr(slash + 1)), kUrlForm);
   out->network = static_cast<std::uint16_t>(*network);
   return out;
 }

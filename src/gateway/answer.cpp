@@ -1,10 +1,10 @@
 #include "gateway/answer.hpp"
 
-#include <fmt/format.h>
 #include <array>
 #include <limits>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
@@ -70,16 +70,16 @@ std::string_view code_text(unsigned code) {
   return {};
 }
 
-std::string ok_line(std::uint32_t sequence) { return fmt::format("[{}] OK\r\n", sequence); }
+std::string ok_line(std::uint32_t sequence) { return formatted("[{}] OK\r\n", sequence); }
 
 std::string value_line(std::uint32_t sequence, std::string_view value) {
-  return fmt::format("[{}] {}\r\n", sequence, value);
+  return formatted("[{}] {}\r\n", sequence, value);
 }
 
 std::string error_line(std::uint32_t sequence, Code code, std::string_view why) {
   const auto number = static_cast<unsigned>(code);
-  return fmt::format("[{}] ERROR:{} #{}{}{}.\r\n", sequence, number, code_text(number),
-                     why.empty() ? "" : ": ", printable(why));
+  return formatted("[{}] ERROR:{} #{}{}{}.\r\n", sequence, number, code_text(number), why.empty() ? "" : ": ",
+                   printable(why));
 }
 
 std::string failure_line(std::uint32_t sequence, const Error& error) {
@@ -90,7 +90,7 @@ std::string failure_line(std::uint32_t sequence, const Error& error) {
   auto why = error.code == Errc::protocol ? printable(error.message) : canopen::sdo_abort_text(*code);
   // What is known of a node that did not answer in time is what to do about it.
   if (error.code == Errc::timeout && !error.hint.empty()) why += ": " + printable(error.hint);
-  return fmt::format("[{}] ERROR:0x{:08X} #{}.\r\n", sequence, *code, why);
+  return formatted("[{}] ERROR:0x{:08X} #{}.\r\n", sequence, *code, why);
 }
 
 std::optional<Answer> parse_answer(std::string_view line) {

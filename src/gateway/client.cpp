@@ -1,6 +1,6 @@
 #include "gateway/client.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl::gateway {
 namespace {
@@ -15,7 +15,7 @@ std::string Client::start(std::string_view request, TimePoint now, Duration pati
   begun_ = now;
   deadline_ = now + patience;
   outcome_.reset();
-  return fmt::format("[{}] {}\r\n", ++sequence_, request);
+  return formatted("[{}] {}\r\n", ++sequence_, request);
 }
 
 void Client::reset() {
@@ -39,7 +39,7 @@ void Client::on_bytes(std::string_view bytes, TimePoint now) {
 /// Whether what waits for the end of its line is the beginning of the answer: whatever else a gateway says
 /// keeps nobody waiting.
 bool Client::begins_the_answer() const {
-  const auto number = fmt::format("[{}]", sequence_);
+  const auto number = formatted("[{}]", sequence_);
   return std::string_view(bytes_).substr(0, number.size()) == number;
 }
 
@@ -96,7 +96,7 @@ Answer answer_in(std::string_view lines) {
     if (answer.kind == Answer::Kind::value) answer.text += lines.substr(first);
     return answer;
   }
-  return parse_answer(fmt::format("[{}] {}", answer.sequence, last.substr(kBroken.size()))).value_or(answer);
+  return parse_answer(formatted("[{}] {}", answer.sequence, last.substr(kBroken.size()))).value_or(answer);
 }
 
 }  // namespace servoctl::gateway

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/base64.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "gateway/words.hpp"
@@ -43,14 +44,14 @@ constexpr std::uint64_t kMostMilliseconds = 0x0FFF'FFFF;
 constexpr std::uint64_t kMostDays = 0xFFFF;
 
 tl::unexpected<Error> no_value(std::string_view words) {
-  return fail(Errc::usage, fmt::format("'{}' is not a value of this type", words));
+  return fail(Errc::usage, formatted("'{}' is not a value of this type", words));
 }
 
 Result<Bytes> parse_time(std::span<const std::string> words) {
   const auto days = words.size() == 2 ? parse_digits(words[0], 10) : std::nullopt;
   const auto ms = words.size() == 2 ? parse_digits(words[1], 10) : std::nullopt;
   if (!days || *days > kMostDays || !ms || *ms > kMostMilliseconds)
-    return no_value(fmt::format("{}", fmt::join(words, " ")));
+    return no_value(formatted("{}", fmt::join(words, " ")));
   return store_le(*ms | *days << 32U, 6);
 }
 
@@ -80,7 +81,7 @@ Result<Bytes> parse_number(DataType type, const std::string& word) {
 Result<Bytes> bytes_of(ValueType type, std::span<const std::string> words) {
   if (type.form == Form::hex) return parse_hex(words);
   if (type.form == Form::time) return parse_time(words);
-  if (words.size() != 1) return no_value(fmt::format("{}", fmt::join(words, " ")));
+  if (words.size() != 1) return no_value(formatted("{}", fmt::join(words, " ")));
   const auto& word = words.front();
   if (type.form == Form::text) return Bytes(word.begin(), word.end());
   if (type.form != Form::base64) return parse_number(type.type, word);
@@ -109,13 +110,13 @@ std::string value_text(ValueType type, ByteSpan bytes) {
   if (type.form == Form::base64) return to_base64(bytes);
   if (type.form == Form::hex || bytes.size() != od::size_of(type.type)) return to_hex(bytes);
   const auto raw = load_le(bytes);
-  if (type.form == Form::hex_number) return fmt::format("0x{:0{}X}", raw, 2 * bytes.size());
-  if (type.form == Form::time) return fmt::format("{} {}", raw >> 32U, raw & kMostMilliseconds);
+  if (type.form == Form::hex_number) return formatted("0x{:0{}X}", raw, 2 * bytes.size());
+  if (type.form == Form::time) return formatted("{} {}", raw >> 32U, raw & kMostMilliseconds);
   if (type.type == DataType::boolean) return std::to_string(raw);
   const auto value = od::decode(type.type, bytes);
   if (!value) return to_hex(bytes);
   // As many digits as tell it from its neighbours, and no more.
-  if (type.type == DataType::f32) return fmt::format("{}", static_cast<float>(od::to_double(*value)));
+  if (type.type == DataType::f32) return formatted("{}", static_cast<float>(od::to_double(*value)));
   return od::to_string(*value);
 }
 

@@ -1,8 +1,8 @@
 #include "modbus/address.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -33,7 +33,7 @@ bool read_characters(std::string_view text, SerialSettings& out) {
 Result<void> read_part(std::string_view part, bool first, SerialSettings& out) {
   if (first) {
     const auto baud = can::parse_baud(part);
-    if (!baud) return wrong(fmt::format("'{}' is not a speed in bits per second", part), kSerialForm);
+    if (!baud) return wrong(formatted("'{}' is not a speed in bits per second", part), kSerialForm);
     out.line.baud = *baud;
     return {};
   }
@@ -42,7 +42,7 @@ Result<void> read_part(std::string_view part, bool first, SerialSettings& out) {
   else if (equals_nocase(part, "rtu"))
     out.framing = Framing::rtu;
   else if (!read_characters(part, out))
-    return wrong(fmt::format("'{}' is not the form of a character: write 8E1, 8N1, 8O1 or 8N2", part),
+    return wrong(formatted("'{}' is not the form of a character: write 8E1, 8N1, 8O1 or 8N2", part),
                  kSerialForm);
   return {};
 }
@@ -52,8 +52,8 @@ Result<void> read_part(std::string_view part, bool first, SerialSettings& out) {
 std::string SerialSettings::text() const { return line.text() + (framing == Framing::ascii ? ",ascii" : ""); }
 
 std::string TcpAddress::text() const {
-  return host.find(':') == std::string::npos ? fmt::format("{}:{}", host, port)
-                                             : fmt::format("[{}]:{}", host, port);
+  return host.find(':') == std::string::npos ? formatted("{}:{}", host, port)
+                                             : formatted("[{}]:{}", host, port);
 }
 
 Result<SerialSettings> parse_serial(std::string_view text) {
@@ -78,7 +78,7 @@ Result<TcpAddress> parse_tcp(std::string_view text) {
   std::string_view port;
   if (text.starts_with('[')) {
     const auto end = text.find(']');
-    if (end == std::string_view::npos) return wrong(fmt::format("'{}': ] is missing", text), kTcpForm);
+    if (end == std::string_view::npos) return wrong(formatted("'{}': ] is missing", text), kTcpForm);
     out.host = std::string(text.substr(1, end - 1));
     if (end + 1 < text.size()) port = text.substr(end + 1);
   } else {
@@ -90,7 +90,7 @@ Result<TcpAddress> parse_tcp(std::string_view text) {
   if (port.empty()) return out;
   const auto number = port.front() == ':' ? parse_digits(port.substr(1), 10) : std::nullopt;
   if (!number || *number == 0 || *number > 65535)
-    return wrong(fmt::format("'{}' is not a TCP port", port), kTcpForm);
+    return wrong(formatted("'{}' is not a TCP port", port), kTcpForm);
   out.port = static_cast<std::uint16_t>(*number);
   return out;
 }

@@ -1,10 +1,11 @@
 #include "modbus/serial_port.hpp"
 
-#include <fmt/format.h>
 #include <poll.h>
 
 #include <algorithm>
 #include <string>
+
+#include "base/format.hpp"
 
 namespace servoctl::modbus {
 namespace {
@@ -27,7 +28,7 @@ Duration SerialPort::silence() const {
 }
 
 tl::unexpected<Error> SerialPort::not_open() const {
-  return fail(Errc::bus, fmt::format("{} is gone", settings_.line.device),
+  return fail(Errc::bus, formatted("{} is gone", settings_.line.device),
               "was the adapter unplugged? plug it in again");
 }
 

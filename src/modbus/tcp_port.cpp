@@ -1,10 +1,11 @@
 #include "modbus/tcp_port.hpp"
 
-#include <fmt/format.h>
 #include <poll.h>
 
 #include <algorithm>
 #include <string>
+
+#include "base/format.hpp"
 
 namespace servoctl::modbus {
 namespace {
@@ -26,7 +27,7 @@ Result<can::TcpClient> connect_to(const TcpAddress& address, TimePoint limit) {
 }  // namespace
 
 tl::unexpected<Error> TcpPort::not_connected() const {
-  return fail(Errc::bus, fmt::format("the connection to {} is lost", address_.text()),
+  return fail(Errc::bus, formatted("the connection to {} is lost", address_.text()),
               "the next line connects anew");
 }
 

@@ -1,9 +1,9 @@
 #include "motion/abandoned.hpp"
 
-#include <fmt/format.h>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "drive/enabling_write.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
@@ -29,7 +29,7 @@ void end_power(show::Desk& desk, std::uint8_t node, const drive::PowerParameter&
   const auto data = od::encode(meaning.type, od::Value(parameter.value));
   const auto done = data ? desk.session->download(node, *place, *data) : Result<void>(fail(data.error()));
   if (done)
-    return desk.tell(fmt::format(
+    return desk.tell(formatted(
         "notice: node {}: {} = {} is written: the client that wrote {} is gone, or the gateway ends\n", node,
         parameter.end, parameter.value, parameter.name));
   auto error = done.error();
@@ -63,7 +63,7 @@ void stop_abandoned(show::Desk& desk, const std::set<std::uint8_t>& nodes) {
   std::set<std::uint8_t> stopped;
   for (const auto node : nodes) {
     if (is_at_rest(session, node)) continue;
-    desk.tell(fmt::format(
+    desk.tell(formatted(
         "warning: node {} is energised or does not report its state, and the client that enabled it is gone: stopping it\n",
         node));
     stopped.insert(node);

@@ -1,7 +1,6 @@
 #include "motion/control_source.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "session/storage.hpp"
 
@@ -24,18 +23,18 @@ Result<std::optional<OtherSource>> other_source(session::Session& session, const
 }
 
 std::string OtherSource::cause() const {
-  return waits ? fmt::format("{} = {} waits for a restart", name, needed)
-               : fmt::format("{} is {}, and {} is needed for CANopen", name, number_text(in_force), needed);
+  return waits ? formatted("{} = {} waits for a restart", name, needed)
+               : formatted("{} is {}, and {} is needed for CANopen", name, number_text(in_force), needed);
 }
 
 std::string OtherSource::remedy(const drive::Profile& profile, std::uint8_t node) const {
   return waits ? std::string("restart the drive")
-               : fmt::format("`{}` and restart the drive", lasting_setting(profile, node, name, needed));
+               : formatted("`{}` and restart the drive", lasting_setting(profile, node, name, needed));
 }
 
 std::string lasting_setting(const drive::Profile& profile, std::uint8_t node, std::string_view name,
                             std::int64_t value) {
-  auto out = fmt::format("param set {}={} -n {}", name, value, node);
+  auto out = formatted("param set {}={} -n {}", name, value, node);
   if (profile.rules.store.locks(name)) out += " --unlock";
   if (session::can_store(profile)) out += " --keep";
   return out;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/homing_method.hpp"
 #include "drive/naming.hpp"
@@ -15,9 +16,9 @@ namespace {
 std::string condition_text(const HeldCaution& held) {
   const auto& rule = *held.rule;
   if (rule.not_value && !rule.others.empty())
-    return fmt::format("none of {}, {} is {}", rule.name, fmt::join(rule.others, ", "), *rule.not_value);
-  if (rule.value) return fmt::format("{} = {}", rule.name, *rule.value);
-  if (rule.not_value) return fmt::format("{} is not {}", rule.name, *rule.not_value);
+    return formatted("none of {}, {} is {}", rule.name, fmt::join(rule.others, ", "), *rule.not_value);
+  if (rule.value) return formatted("{} = {}", rule.name, *rule.value);
+  if (rule.not_value) return formatted("{} is not {}", rule.name, *rule.not_value);
   return "the family's data say so";
 }
 
@@ -28,33 +29,33 @@ std::string remedy(const HeldCaution& held, const MotionUnits& units) {
   if (ending.empty()) return "use another method or motion";
   const bool restart = show::needs_restart(units.profile(), rule);
   if (!rule.others.empty())
-    return fmt::format("`{}` and restart the drive; any of these inputs will do",
-                       lasting_setting(units.profile(), units.node(), rule.name, *rule.set));
+    return formatted("`{}` and restart the drive; any of these inputs will do",
+                     lasting_setting(units.profile(), units.node(), rule.name, *rule.set));
   if (!held.unread && units.object(rule.name))
-    return restart ? fmt::format("`{}` and restart the drive",
-                                 lasting_setting(units.profile(), units.node(), rule.name, *rule.set))
-                   : fmt::format("`param set {}={} -n {}` ends that", rule.name, *rule.set, units.node());
-  return restart ? fmt::format("set {} on the panel and restart the drive, then add --panel {}={}", ending,
-                               rule.name, *rule.set)
-                 : fmt::format("set {} on the panel, then add --panel {}={}", ending, rule.name, *rule.set);
+    return restart ? formatted("`{}` and restart the drive",
+                               lasting_setting(units.profile(), units.node(), rule.name, *rule.set))
+                   : formatted("`param set {}={} -n {}` ends that", rule.name, *rule.set, units.node());
+  return restart ? formatted("set {} on the panel and restart the drive, then add --panel {}={}", ending,
+                             rule.name, *rule.set)
+                 : formatted("set {} on the panel, then add --panel {}={}", ending, rule.name, *rule.set);
 }
 
 Error refusal(const HeldCaution& held, const MotionUnits& units, const std::string& what) {
   const auto because =
-      held.unread ? fmt::format("{} cannot be read; assumed: {}", held.rule->name, condition_text(held))
+      held.unread ? formatted("{} cannot be read; assumed: {}", held.rule->name, condition_text(held))
                   : condition_text(held);
-  return drive_error(Errc::refused, units.node(), fmt::format("{}: {}", what, because), remedy(held, units));
+  return drive_error(Errc::refused, units.node(), formatted("{}: {}", what, because), remedy(held, units));
 }
 
 Result<void> check_method(const HeldCaution& held, const MotionUnits& units, std::int64_t method) {
   const auto& rule = *held.rule;
   if (std::find(rule.methods.begin(), rule.methods.end(), method) != rule.methods.end())
-    return fail(refusal(held, units, fmt::format("homing method {} is not possible", method)));
+    return fail(refusal(held, units, formatted("homing method {} is not possible", method)));
   for (const auto input : drive::switches_of(units.profile().rules.motion, method))
     if (rule.masks_input(input))
       return fail(refusal(
           held, units,
-          fmt::format("homing method {} needs {}, which the drive ignores", method, show::name(input))));
+          formatted("homing method {} needs {}, which the drive ignores", method, show::name(input))));
   return {};
 }
 
@@ -162,7 +163,7 @@ Result<PanelValues> checked_panel(const drive::Profile& profile, const PanelValu
     const auto parameter = drive::resolve_parameter(profile, name);
     if (!parameter) return fail(parameter.error());
     if ((*parameter)->object)
-      return fail(Errc::usage, fmt::format("--panel {}: servoctl reads this parameter from the drive", name),
+      return fail(Errc::usage, formatted("--panel {}: servoctl reads this parameter from the drive", name),
                   "leave it out");
     out[(*parameter)->id] = value;
   }

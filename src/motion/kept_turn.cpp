@@ -1,9 +1,8 @@
 #include "motion/kept_turn.hpp"
 
-#include <fmt/format.h>
-
 #include "base/checksum.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 #include "base/number.hpp"
 #include "session/identify.hpp"
@@ -63,14 +62,13 @@ Result<KeptTurn> parse(const Value& document, const std::string& file, std::uint
   if (fields.error()) return damaged(*fields.error());
   out.identity = *identity;
   if (seal != seal_of(out, node))
-    return damaged(
-        fmt::format("{}: its seal does not match: the file was changed after it was written", file));
+    return damaged(formatted("{}: its seal does not match: the file was changed after it was written", file));
   return out;
 }
 
 /// Why what is kept is not to be used; empty when it is.
 std::string reason_against(const show::Desk& desk, std::uint8_t node, const KeptTurn& kept) {
-  if (kept.family != desk.profile->family) return fmt::format("they were measured with -d {}", kept.family);
+  if (kept.family != desk.profile->family) return formatted("they were measured with -d {}", kept.family);
   const auto now = session::read_identity(*desk.session, node);
   if (!now) return now.error().message;
   const auto change = show::change_of(kept.identity, *now);
@@ -81,8 +79,7 @@ std::string reason_against(const show::Desk& desk, std::uint8_t node, const Kept
 
 TurnFile::TurnFile(const show::Desk& desk, std::uint8_t node) : node_(node) {
   if (!desk.state_folder.empty())
-    path_ =
-        desk.state_folder / fmt::format("turn-{}-node-{}.json", show::bus_name(desk.session->url()), node);
+    path_ = desk.state_folder / formatted("turn-{}-node-{}.json", show::bus_name(desk.session->url()), node);
 }
 
 Result<std::optional<KeptTurn>> TurnFile::read() const {
@@ -108,7 +105,7 @@ Result<bool> TurnFile::remove() const {
   if (path_.empty()) return false;
   std::error_code error;
   const bool removed = std::filesystem::remove(path_, error);
-  if (error) return fail(Errc::file, fmt::format("{}: {}", path_.string(), error.message()));
+  if (error) return fail(Errc::file, formatted("{}: {}", path_.string(), error.message()));
   return removed;
 }
 
@@ -150,7 +147,7 @@ std::string restart_note(const drive::Profile& profile, const drive::Quotient& w
     out += (out.empty() ? "" : ", ") + (target.parameter ? target.parameter->id : to_string(object));
   }
   if (out.empty()) return out;
-  return fmt::format("{} take effect at a restart of the drive: restart it first if one was changed", out);
+  return formatted("{} take effect at a restart of the drive: restart it first if one was changed", out);
 }
 
 std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& known) {
@@ -158,10 +155,10 @@ std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& k
   const auto* way = units.turn_way();
   const auto pending = way == nullptr || way->learned ? std::string() : restart_note(units.profile(), *way);
   if (!pending.empty())
-    out.push_back(fmt::format("{} increments of 6064h per revolution, from the drive's parameters; {}",
-                              plain_number(units.turn().value_or(0), 12), pending));
+    out.push_back(formatted("{} increments of 6064h per revolution, from the drive's parameters; {}",
+                            plain_number(units.turn().value_or(0), 12), pending));
   if (units.uses_learned() && known.kept)
-    out.push_back(fmt::format(
+    out.push_back(formatted(
         "{} increments of 6064h per revolution, from the {} encoder counts ({}) measured at {} and kept for "
         "this drive; --turn overrides it{}",
         plain_number(units.turn().value_or(0), 12), known.kept->counts, known.kept->reason, known.kept->time,
@@ -170,8 +167,8 @@ std::vector<std::string> turn_notes(const MotionUnits& units, const KnownTurn& k
               "drive or motor"
             : ""));
   if (!known.unused.empty() && !units.turn())
-    out.push_back(fmt::format("the kept counts per revolution are not used: {}; `units learn` measures again",
-                              known.unused));
+    out.push_back(formatted("the kept counts per revolution are not used: {}; `units learn` measures again",
+                            known.unused));
   return out;
 }
 

@@ -1,8 +1,8 @@
 #include "motion/left_energised.hpp"
 
-#include <fmt/format.h>
 #include <set>
 
+#include "base/format.hpp"
 #include "motion/power.hpp"
 #include "session/option_scope.hpp"
 
@@ -10,25 +10,24 @@ namespace servoctl::motion {
 
 std::string energised_notice(const session::Session& session, std::uint8_t node) {
   if (session.network().must_go_on())
-    return fmt::format("node {} IS ENERGISED as long as servoctl runs, and not supervised", node);
-  return fmt::format("node {} IS ENERGISED and not supervised; `disable -n {}` de-energises it", node, node);
+    return formatted("node {} IS ENERGISED as long as servoctl runs, and not supervised", node);
+  return formatted("node {} IS ENERGISED and not supervised; `disable -n {}` de-energises it", node, node);
 }
 
 std::string disabled_notice(std::uint8_t node) {
-  return fmt::format("node {} was still energised; it has been stopped and disabled", node);
+  return formatted("node {} was still energised; it has been stopped and disabled", node);
 }
 
 Error ended_in_fault(std::uint8_t node) {
-  return drive_error(
-      Errc::negative, node,
-      fmt::format("it had been enabled; it is de-energised now, but in fault, and may not have "
-                  "obeyed the stop: `fault show -n {}` shows the fault",
-                  node),
-      "find the cause of the fault before the drive is enabled again");
+  return drive_error(Errc::negative, node,
+                     formatted("it had been enabled; it is de-energised now, but in fault, and may not have "
+                               "obeyed the stop: `fault show -n {}` shows the fault",
+                               node),
+                     "find the cause of the fault before the drive is enabled again");
 }
 
 std::string power_warning(std::uint8_t node, std::string_view why) {
-  return fmt::format("NODE {} MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY: {}", node, why);
+  return formatted("NODE {} MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY: {}", node, why);
 }
 
 namespace {
@@ -63,14 +62,14 @@ void tell_left_energised(show::Desk& desk, const std::set<std::uint8_t>& nodes) 
     if (state && drive::is_energised(*state)) {
       desk.notices.push_back(energised_notice(session, node));
     } else if (state && session.energised().contains(node)) {
-      desk.notices.push_back(fmt::format(
+      desk.notices.push_back(formatted(
           "node {} is in {}, and 6040h may still hold \"enable operation\": it may become energised by "
           "itself; `disable -n {}` clears it",
           node, drive::name(*state), node));
     } else if (!state && state.error().code != Errc::sdo_abort) {
       auto error = state.error();
       error.message =
-          fmt::format("node {} MAY BE ENERGISED: state not known ({})", node, state.error().message);
+          formatted("node {} MAY BE ENERGISED: state not known ({})", node, state.error().message);
       error.node = node;
       desk.errors.push_back(std::move(error));
     }

@@ -1,10 +1,10 @@
 #include "motion/motion.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <new>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/soft_ramp.hpp"
 #include "drive/standard_objects.hpp"
@@ -64,8 +64,8 @@ Error Motion::without_first_axis(Error error) const {
   const auto others = other_axes(*session_, profile_, node_);
   if (others.empty()) return error;
   return drive_error(Errc::refused, node_,
-                     fmt::format("it has no axis 1 ({}), which servoctl commands: {}",
-                                 to_string(objects::kStatusword), others.front().text()),
+                     formatted("it has no axis 1 ({}), which servoctl commands: {}",
+                               to_string(objects::kStatusword), others.front().text()),
                      "servoctl cannot command another axis yet; `read` and `write` reach its objects");
 }
 
@@ -94,11 +94,10 @@ Result<std::vector<PreflightItem>> Motion::look(bool chinese) {
   if (const auto other = units_->other_turn())
     items->push_back(
         {PreflightItem::Weight::caution, "turn",
-         fmt::format(
-             "it was told to be {} increments (--turn or the cabinet file), and the drive's parameters "
-             "make it {}: where they are right, speeds and ways are {} times what is asked for",
-             plain_number(*units_->turn(), 12), plain_number(*other, 12),
-             number_text(*units_->turn() / *other))});
+         formatted("it was told to be {} increments (--turn or the cabinet file), and the drive's parameters "
+                   "make it {}: where they are right, speeds and ways are {} times what is asked for",
+                   plain_number(*units_->turn(), 12), plain_number(*other, 12),
+                   number_text(*units_->turn() / *other))});
   if (units_->is_unproven(objects::kTargetVelocity))
     items->push_back({PreflightItem::Weight::caution, "units",
                       "nothing states the unit of speeds (60A9h, the drive's data): plain numbers go to the "
@@ -140,9 +139,8 @@ bool Motion::add_setting(ObjectAddress object, double value, MotionPlan& plan) c
   plan.settings.emplace_back(object, *data);
   const auto held = units_->physical(object, *data);
   if (held && std::abs(held->value - value) > std::abs(value) * kChosenLoss)
-    plan.notes.push_back(fmt::format("{} is set to {} {}, the nearest possible value to {}",
-                                     to_string(object), number_text(held->value), held->unit,
-                                     number_text(value)));
+    plan.notes.push_back(formatted("{} is set to {} {}, the nearest possible value to {}", to_string(object),
+                                   number_text(held->value), held->unit, number_text(value)));
   return true;
 }
 
@@ -274,10 +272,10 @@ MotionReport Motion::finish(Result<void> outcome) {
   const bool fault =
       out.end.state == drive::DriveState::fault || out.end.state == drive::DriveState::fault_reaction_active;
   if (out.outcome && out.begun && fault)
-    out.outcome = fail(
-        error(Errc::negative,
-              fmt::format("went to fault while it was stopped (statusword 0x{:04X})", out.end.statusword),
-              "`fault show` shows the fault"));
+    out.outcome =
+        fail(error(Errc::negative,
+                   formatted("went to fault while it was stopped (statusword 0x{:04X})", out.end.statusword),
+                   "`fault show` shows the fault"));
   try {
     out.samples = monitor_->samples();
     out.series = monitor_->series();

@@ -1,7 +1,7 @@
 // What the family's data and missing knowledge forbid a motion.
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
@@ -21,9 +21,9 @@ Result<void> Motion::check_units_in_force() const {
         if (std::ranges::find(objects, value.object) == objects.end()) continue;
         return fail(drive_error(
             Errc::refused, node_, value.object,
-            fmt::format("what a turn of the motor is, is not known: {}: {}", show::owed_lead(waiting),
-                        show::owed_text(profile_, node_, waiting, false)),
-            fmt::format("restart the drive first; `status --restarted -n {}` says that it was", node_)));
+            formatted("what a turn of the motor is, is not known: {}: {}", show::owed_lead(waiting),
+                      show::owed_text(profile_, node_, waiting, false)),
+            formatted("restart the drive first; `status --restarted -n {}` says that it was", node_)));
       }
   return {};
 }
@@ -78,7 +78,7 @@ Result<double> Motion::find_unconverted_cap(std::optional<double> most) {
     return std::min(safe, most.value_or(safe));
   }
   return fail(Errc::usage, "no safe speed is known for this drive: its speeds cannot be converted to rpm",
-              fmt::format("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
+              formatted("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 
 /// What limits the speed while the counts of a turn are not known.
@@ -86,11 +86,11 @@ std::string Motion::unconverted_limit() const {
   const auto counts = plain_number(*supposed_turn_, 12);
   const auto unit = units_->unit(objects::kTargetVelocity);
   return options_.supposed_turn
-             ? fmt::format(
+             ? formatted(
                    "the counts per turn are not known (--turn): the limit is {} {}, which is {} rpm at {}, given for "
                    "this drive earlier",
                    number_text(*speed_cap_), unit, number_text(kSafeRpm), counts)
-             : fmt::format(
+             : formatted(
                    "the counts per turn are not known (--turn): the limit is {} {}, which is {} rpm at {}, the "
                    "fewest of this family",
                    number_text(*speed_cap_), unit, number_text(kSafeRpm), counts);
@@ -100,7 +100,7 @@ Error unproven_speed(const Motion& motion) {
   const auto unit = motion.units().unit(objects::kTargetVelocity);
   return motion.error(
       Errc::refused, "no speed given, and the drive's own speed cannot be converted to rpm",
-      fmt::format("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
+      formatted("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 
 }  // namespace servoctl::motion

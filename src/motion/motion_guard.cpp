@@ -1,9 +1,9 @@
 #include "motion/motion_guard.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <tuple>
 
+#include "base/format.hpp"
 #include "base/pdo_index.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
@@ -205,10 +205,10 @@ Result<void> MotionGuard::enable() {
   if (const auto foreign = foreign_command())
     return fail(Errc::negative,
                 foreign->by_pdo()
-                    ? fmt::format("another master sends PDOs with object {}: the drive was not enabled",
-                                  to_string(foreign->object))
-                    : fmt::format("another master has written object {}: the drive was not enabled",
-                                  to_string(foreign->object)),
+                    ? formatted("another master sends PDOs with object {}: the drive was not enabled",
+                                to_string(foreign->object))
+                    : formatted("another master has written object {}: the drive was not enabled",
+                                to_string(foreign->object)),
                 std::string(kTwoMasters));
   energised_ = true;
   if (rehearsal_ == nullptr) return power_.reach(DriveState::operation_enabled);

@@ -1,9 +1,9 @@
 // How a motion ends: the way down to a drive without power that is as it was.
-#include <fmt/format.h>
 #include <cmath>
 #include <exception>
 #include <utility>
 
+#include "base/format.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/kept_op.hpp"
 #include "motion/motion_guard.hpp"
@@ -38,8 +38,8 @@ void MotionGuard::put_node_back() {
   }
   const auto sent = session_->network().request_state(node_, session::NodeState::pre_operational);
   if (!sent)
-    note(fmt::format("the node could not be set back to {}",
-                     session_->network().state_word(session::NodeState::pre_operational)),
+    note(formatted("the node could not be set back to {}",
+                   session_->network().state_word(session::NodeState::pre_operational)),
          sent.error());
 }
 
@@ -89,7 +89,7 @@ void MotionGuard::bring_down() {
   powered_ = !done.is_without_power();
   for (const auto& means : done.notes) result_.notes.push_back(means);
   if (done.ignored > 0)
-    result_.left.push_back(fmt::format(
+    result_.left.push_back(formatted(
         "it did not obey 0000h, written {} times: its present state was not commanded", done.ignored));
   else if (!done.outcome)
     result_.left.push_back(
@@ -99,7 +99,7 @@ void MotionGuard::bring_down() {
 }
 
 void MotionGuard::note(const std::string& what, const Error& error) {
-  result_.left.push_back(fmt::format("{}: {}", what, error.message));
+  result_.left.push_back(formatted("{}: {}", what, error.message));
 }
 
 /// Some drives take a refused write for a fault.
@@ -113,14 +113,14 @@ void MotionGuard::put_back() {
   for (auto changed = changed_.rbegin(); changed != changed_.rend(); ++changed) {
     // Its old targets and an old watchdog are nothing for a drive that still has its power.
     if (lost_ || powered_) {
-      result_.left.push_back(fmt::format("object {} was not restored to {}", to_string(changed->object),
-                                         to_hex(changed->before)));
+      result_.left.push_back(
+          formatted("object {} was not restored to {}", to_string(changed->object), to_hex(changed->before)));
       continue;
     }
     if (stays_new(*changed)) {
       result_.notes.push_back(
-          fmt::format("object {} keeps its new value: its old value, {}, is out of its range",
-                      to_string(changed->object), to_hex(changed->before)));
+          formatted("object {} keeps its new value: its old value, {}, is out of its range",
+                    to_string(changed->object), to_hex(changed->before)));
       continue;
     }
     put_back(*changed);
@@ -139,12 +139,12 @@ void MotionGuard::keep_mode() {
 /// What the drive acknowledges is read as well: it may not have done it, and another master may use it.
 void MotionGuard::put_back(const Changed& changed) {
   session::LinkWait link(*session_,
-                         fmt::format("restoring object {} of node {}", to_string(changed.object), node_));
+                         formatted("restoring object {} of node {}", to_string(changed.object), node_));
   auto done = session_->download(node_, changed.object, changed.before);
   while (!done && done.error().code == Errc::bus && link.comes_back(done.error()))
     done = session_->download(node_, changed.object, changed.before);
   const auto what =
-      fmt::format("object {} could not be restored to {}", to_string(changed.object), to_hex(changed.before));
+      formatted("object {} could not be restored to {}", to_string(changed.object), to_hex(changed.before));
   const bool none_chosen = changed.object == objects::kModeOfOperation && load_le(changed.before) == 0;
   if (none_chosen && !done && done.error().code == Errc::sdo_abort) return keep_mode();
   // A write whose answer is lost, or may be that to an earlier one, may have been done.
@@ -159,22 +159,22 @@ void MotionGuard::put_back(const Changed& changed) {
   if (!now_holds && now_holds.error().code == Errc::sdo_abort)
     return;  // The drive has taken it, and tells no more.
   if (!now_holds)
-    return note(fmt::format("object {} was written back to {}, but could not be read back",
-                            to_string(changed.object), to_hex(changed.before)),
+    return note(formatted("object {} was written back to {}, but could not be read back",
+                          to_string(changed.object), to_hex(changed.before)),
                 now_holds.error());
-  result_.left.push_back(fmt::format("{}: it was written and reads {}; does another master use the drive?",
-                                     what, to_hex(*now_holds)));
+  result_.left.push_back(formatted("{}: it was written and reads {}; does another master use the drive?",
+                                   what, to_hex(*now_holds)));
 }
 
 void MotionGuard::tell_foreign_writes() {
   for (const auto& [object, way] : foreign_)
     result_.left.push_back(
         way == session::ForeignWrites::Way::rpdo
-            ? fmt::format(
+            ? formatted(
                   "another master sent a PDO with object {} meanwhile: its old value may be lost, and its "
                   "present value may be wrong",
                   to_string(object))
-            : fmt::format(
+            : formatted(
                   "another master wrote object {} meanwhile: its old value may be lost, and its present "
                   "value may be wrong",
                   to_string(object)));

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/homing_method.hpp"
 #include "drive/standard_objects.hpp"
@@ -51,7 +51,7 @@ class Homing {
     if (*ended) return {};
     return fail(motion_->error(
         Errc::negative,
-        fmt::format("no home found in {} s", std::chrono::duration<double>(plan_->longest).count()),
+        formatted("no home found in {} s", std::chrono::duration<double>(plan_->longest).count()),
         "check that the switch and the index pulse come; `--within` allows more time"));
   }
 
@@ -74,7 +74,7 @@ class Homing {
     stale_error_ = stale_error_ && is_error(sample.statusword) && sample.time - started_at_ < kStart;
     if (is_error(sample.statusword) && !stale_error_)
       return fail(motion_->error(
-          Errc::negative, fmt::format("ended homing with an error (statusword 0x{:04X})", sample.statusword),
+          Errc::negative, formatted("ended homing with an error (statusword 0x{:04X})", sample.statusword),
           "switch stuck, wrong method or a limit in the way; see also `fault show`"));
     const bool done = is_done(sample.statusword);
     seen_low_ = seen_low_ || !done;
@@ -126,7 +126,7 @@ class Homing {
 Result<void> add(const Motion& motion, ObjectAddress object, const std::string& text, MotionPlan& plan) {
   if (text.empty()) return {};
   if (!motion.units().has(object))
-    return fail(motion.error(Errc::usage, fmt::format("this family has no object {}", to_string(object))));
+    return fail(motion.error(Errc::usage, formatted("this family has no object {}", to_string(object))));
   const bool is_way = object == objects::kHomeOffset;
   const auto data =
       motion.units().parse(object, text, is_way ? MotionUnits::Kind::way : MotionUnits::Kind::size);
@@ -153,16 +153,16 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
   const auto& nothing = motion.rules().no_homing;
   if (number == kNoMethod || std::find(nothing.begin(), nothing.end(), number) != nothing.end())
     return fail(motion.error(
-        Errc::refused, fmt::format("homing method {} (6098h) does nothing: no homing would occur", number),
-        fmt::format("give one: `home METHOD -n {}`; {}, `write 0x6098 METHOD` sets one", motion.node(),
-                    meaning.labels != nullptr ? "`objects 0x6098` lists them" : "the manual lists them")));
+        Errc::refused, formatted("homing method {} (6098h) does nothing: no homing would occur", number),
+        formatted("give one: `home METHOD -n {}`; {}, `write 0x6098 METHOD` sets one", motion.node(),
+                  meaning.labels != nullptr ? "`objects 0x6098` lists them" : "the manual lists them")));
   const auto* label = drive::label_of(meaning, *value);
   if (meaning.labels != nullptr && label == nullptr)
-    return fail(motion.error(Errc::refused, fmt::format("this family has no homing method {}", number),
+    return fail(motion.error(Errc::refused, formatted("this family has no homing method {}", number),
                              "`objects 0x6098` lists them"));
   if (const auto possible = motion.intend({drive::Use::home, number}); !possible) return possible;
   plan.value = static_cast<double>(number);
-  plan.summary = fmt::format("{}{}", number, label != nullptr ? " (" + label->label + ")" : "");
+  plan.summary = formatted("{}{}", number, label != nullptr ? " (" + label->label + ")" : "");
   return {};
 }
 
@@ -174,7 +174,7 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
   if (!speed || speed->unit != motion.units().unit(objects::kTargetVelocity))
     return fail(motion.error(
         Errc::refused,
-        fmt::format("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
+        formatted("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
         motion.is_told_turn()
             ? ""
             : "add --turn (6064h increments per revolution), if the drive does not report it"));
@@ -187,11 +187,11 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
   const bool fast = object == objects::kHomingSpeedSwitch;
   return fail(motion.error(
       Errc::refused,
-      fmt::format("its homing speed ({}) is {} {}: homing would never end", to_string(object),
-                  number_text(speed->value), speed->unit),
-      fmt::format("add {}; `write {} …` sets it",
-                  fast ? "--speed 30rpm (and --search 6rpm where 0x6099:2 is 0, too)" : "--search 6rpm",
-                  to_string(object))));
+      formatted("its homing speed ({}) is {} {}: homing would never end", to_string(object),
+                number_text(speed->value), speed->unit),
+      formatted("add {}; `write {} …` sets it",
+                fast ? "--speed 30rpm (and --search 6rpm where 0x6099:2 is 0, too)" : "--search 6rpm",
+                to_string(object))));
 }
 
 /// From the way that --window leaves it and its speeds; a way that is not known has a time of its own.
@@ -231,8 +231,8 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
     plan.speed = std::min(plan.speed, motion.speed_cap().value_or(plan.speed));
   plan.unit = fast->unit;
   plan.longest = home.longest.value_or(longest_homing(motion, fast->value, slow.value));
-  plan.summary = fmt::format("home by method {} at {} and {} {}", plan.summary, number_text(fast->value),
-                             number_text(slow.value), fast->unit);
+  plan.summary = formatted("home by method {} at {} and {} {}", plan.summary, number_text(fast->value),
+                           number_text(slow.value), fast->unit);
   for (const auto word : motion.rules().start_homing)
     plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
   motion.set_standstill(plan.speed);

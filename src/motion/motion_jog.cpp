@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_judgement.hpp"
@@ -55,7 +55,7 @@ class Jogging {
   void judge(TimePoint told_at, TimePoint stopped_at) {
     if (left_alone_)
       judgement_.unchecked.push_back(
-          fmt::format("no key was held for {}: the jog has ended", servoctl::to_string(kLongestWithoutKey)));
+          formatted("no key was held for {}: the jog has ended", servoctl::to_string(kLongestWithoutKey)));
     if (jog_->keys) return;
     judgement_.judge_speed(*motion_, *plan_, told_at, stopped_at);
     if (jog_->turns) judgement_.judge_way(*motion_, *plan_);
@@ -124,8 +124,8 @@ class Jogging {
     turned_before_ = turned_before_ || (!wrong && std::abs(*speed) > std::abs(wanted) * kTurningPart);
     if (wrong_looks_ >= kWrongLooks)
       return fail(motion_->error(Errc::negative,
-                                 fmt::format("turns the wrong way: {} {} instead of {}", number_text(*speed),
-                                             plan_->unit, number_text(wanted)),
+                                 formatted("turns the wrong way: {} {} instead of {}", number_text(*speed),
+                                           plan_->unit, number_text(wanted)),
                                  "check encoder direction, polarity (607Eh), motor wiring"));
     if (settled && std::abs(*speed) < std::abs(wanted) * kTurningPart)
       return fail(motion_->error(Errc::negative, "does not turn although commanded to",
@@ -133,8 +133,8 @@ class Jogging {
     // Ramps of the user's own take their time.
     if (settled && !motion_->has_own_ramps() && std::abs(*speed) < std::abs(wanted) * kLeastPartOfSpeed)
       return fail(motion_->error(Errc::negative,
-                                 fmt::format("turns at {} {}, less than half of the {} that were commanded",
-                                             number_text(*speed), plan_->unit, number_text(wanted)),
+                                 formatted("turns at {} {}, less than half of the {} that were commanded",
+                                           number_text(*speed), plan_->unit, number_text(wanted)),
                                  "is it blocked, or is its speed limited (607Fh, 6080h)?"));
     return {};
   }
@@ -160,16 +160,16 @@ class Jogging {
 /// The way of so many turns in the unit of the position.
 Result<double> way_of(const Motion& motion, double turns) {
   if (!(std::abs(turns) <= kMostTurns))
-    return fail(Errc::usage, fmt::format("--turns: more than {} turns are no jog", number_text(kMostTurns)));
+    return fail(Errc::usage, formatted("--turns: more than {} turns are no jog", number_text(kMostTurns)));
   if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegreesATurn;
   return fail(motion.error(Errc::usage, "does not report its counts per motor revolution",
                            "add --turn (6064h increments per revolution), or use --for TIME"));
 }
 
 std::string jog_text(const std::string& speed, const Jog& jog) {
-  if (jog.length) return fmt::format("turn at {} for {}", speed, servoctl::to_string(*jog.length));
-  if (jog.turns) return fmt::format("turn at {} for {} turns", speed, number_text(*jog.turns));
-  return fmt::format("turn at {} while an arrow key is held", speed);
+  if (jog.length) return formatted("turn at {} for {}", speed, servoctl::to_string(*jog.length));
+  if (jog.turns) return formatted("turn at {} for {} turns", speed, number_text(*jog.turns));
+  return formatted("turn at {} while an arrow key is held", speed);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include "motion/motion_judgement.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 
 namespace servoctl::motion {
@@ -77,8 +77,8 @@ void MotionJudgement::judge_speed(const Motion& motion, const MotionPlan& plan, 
   }
   const double speed = mean(values);
   if (std::abs(speed - plan.value) <= std::abs(plan.value) * kSpeedTolerance + motion.standstill()) return;
-  differences.push_back(fmt::format("the speed was {} {}; {} {} was commanded", number_text(speed), plan.unit,
-                                    number_text(plan.value), plan.unit));
+  differences.push_back(formatted("the speed was {} {}; {} {} was commanded", number_text(speed), plan.unit,
+                                  number_text(plan.value), plan.unit));
 }
 
 void MotionJudgement::judge_time(Duration asked, TimePoint told_at, TimePoint stopped_at) {
@@ -86,7 +86,7 @@ void MotionJudgement::judge_time(Duration asked, TimePoint told_at, TimePoint st
   const double wanted = in_seconds(asked);
   if (took <= wanted * (1 + kTimeTolerance) + kTimeSlack) return;
   differences.push_back(
-      fmt::format("it took {} s; {} s were commanded", number_text(took), number_text(wanted)));
+      formatted("it took {} s; {} s were commanded", number_text(took), number_text(wanted)));
 }
 
 void MotionJudgement::judge_way_in_time(const Motion& motion, const MotionPlan& plan, Duration asked) {
@@ -112,8 +112,8 @@ void MotionJudgement::judge_way_in_time(const Motion& motion, const MotionPlan& 
   const double most = std::abs(speed) * (seconds * (1 + kTimeTolerance) + kTimeSlack);
   const double gone = *way * (speed < 0 ? -1 : 1);
   if (gone > 0 && gone >= least && gone <= most) return;
-  differences.push_back(fmt::format("it moved {} {} in {} s; about {} {} were commanded", number_text(*way),
-                                    unit, number_text(seconds), number_text(speed * seconds), unit));
+  differences.push_back(formatted("it moved {} {} in {} s; about {} {} were commanded", number_text(*way),
+                                  unit, number_text(seconds), number_text(speed * seconds), unit));
 }
 
 void MotionJudgement::judge_way(const Motion& motion, const MotionPlan& plan) {
@@ -128,7 +128,7 @@ void MotionJudgement::judge_way(const Motion& motion, const MotionPlan& plan) {
   if (std::abs(*way - asked) <= plan.way * kWayTolerance + 2 * step) return;
   const auto unit = motion.units().unit(objects::kPositionActual);
   differences.push_back(
-      fmt::format("it moved {} {}; {} {} was commanded", number_text(*way), unit, number_text(asked), unit));
+      formatted("it moved {} {}; {} {} was commanded", number_text(*way), unit, number_text(asked), unit));
 }
 
 void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan, double near) {
@@ -141,8 +141,8 @@ void MotionJudgement::judge_target(const Motion& motion, const MotionPlan& plan,
   if (std::abs(*place - plan.value) <= near) return;
   const auto numbers = told_apart(*place, plan.value);
   differences.push_back(
-      fmt::format("it is at {} {}; {} {} was commanded (the position window, 6067h, is wider)", numbers.first,
-                  plan.unit, numbers.second, plan.unit));
+      formatted("it is at {} {}; {} {} was commanded (the position window, 6067h, is wider)", numbers.first,
+                plan.unit, numbers.second, plan.unit));
 }
 
 void MotionJudgement::judge_torque(const Motion& motion, const MotionPlan& plan, TimePoint told_at,
@@ -162,8 +162,8 @@ void MotionJudgement::judge_torque(const Motion& motion, const MotionPlan& plan,
   const double torque = mean(values);
   const double noise = plan.unit == "Nm" ? kTorqueNoiseNm : kTorqueNoise;
   if (std::abs(torque - plan.value) <= std::abs(plan.value) * kTorqueTolerance + noise) return;
-  const auto text = fmt::format("the torque was {} {}; {} {} was commanded", number_text(torque), plan.unit,
-                                number_text(plan.value), plan.unit);
+  const auto text = formatted("the torque was {} {}; {} {} was commanded", number_text(torque), plan.unit,
+                              number_text(plan.value), plan.unit);
   if (!speeds.empty() && std::abs(mean(speeds)) >= plan.speed * kAtLimit)
     unchecked.push_back(text + ": limited by the speed limit");
   else

@@ -1,8 +1,8 @@
 // How many counts a turn of the motor has, by a slow turn against the drive's own monitor of the speed.
-#include <fmt/format.h>
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
@@ -114,8 +114,8 @@ class Learning {
     if (std::abs(*rpm) > std::abs(learn_->rpm) * kTooFast + kNoise)
       return fail(
           motion_->error(Errc::negative,
-                         fmt::format("turns too fast: {} shows {} rpm instead of {}", learn_->monitor_name,
-                                     number_text(*rpm), number_text(std::abs(learn_->rpm))),
+                         formatted("turns too fast: {} shows {} rpm instead of {}", learn_->monitor_name,
+                                   number_text(*rpm), number_text(std::abs(learn_->rpm))),
                          "fewer encoder counts than the family's data says? " + std::string(kOtherWay)));
     const auto position = sample[Signal::position];
     if (!position)
@@ -155,14 +155,14 @@ class Learning {
   Error shows_nothing(double speed) const {
     return motion_->error(
         Errc::negative,
-        fmt::format("turns at {} inc/s by 606Ch, but {} shows {} rpm: not usable", number_text(speed),
-                    learn_->monitor_name, number_text(shown_)),
+        formatted("turns at {} inc/s by 606Ch, but {} shows {} rpm: not usable", number_text(speed),
+                  learn_->monitor_name, number_text(shown_)),
         (fastest_ && speed >= *fastest_ ? "607Fh limits it; " : "") + std::string(kOtherWay));
   }
   Error lies(double speed) const {
     return motion_->error(
         Errc::negative,
-        fmt::format(
+        formatted(
             "turns at {} inc/s by 606Ch, but {} shows {} rpm, which contradicts its values at other speeds",
             number_text(speed), learn_->monitor_name, number_text(shown_)),
         std::string(kOtherWay));
@@ -226,10 +226,10 @@ Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
           motion.add_ramps(plan.value, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
       !ramps)
     return fail(ramps.error());
-  plan.summary = fmt::format("turn at {} rpm by {} for {}, about {} turns, approached in steps from {} {}",
-                             number_text(learn.rpm), learn.monitor_name, servoctl::to_string(learn.length),
-                             turns_of(learn), number_text(std::round(plan.value)), plan.unit);
-  plan.tell(fmt::format(
+  plan.summary = formatted("turn at {} rpm by {} for {}, about {} turns, approached in steps from {} {}",
+                           number_text(learn.rpm), learn.monitor_name, servoctl::to_string(learn.length),
+                           turns_of(learn), number_text(std::round(plan.value)), plan.unit);
+  plan.tell(formatted(
       "60FFh and its ramps are written in steps, each for at most {} times the last speed, until {} shows {} "
       "rpm",
       number_text(kSpeedUp), learn.monitor_name, number_text(std::abs(learn.rpm))));

@@ -1,9 +1,9 @@
 #include "motion/motion_monitor.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/power.hpp"
@@ -68,7 +68,7 @@ void MotionMonitor::tell_end_of_tpdos() {
   if (why.empty()) return;
   mapping_.reset();
   if (by_pdo_ > 0 && session_->options().tell)
-    session_->options().tell(fmt::format("node {} {}: its values are read by SDO from now on", node_, why));
+    session_->options().tell(formatted("node {} {}: its values are read by SDO from now on", node_, why));
 }
 
 std::vector<Result<Bytes>> MotionMonitor::look(std::span<const ObjectAddress> objects, TimePoint end) {
@@ -166,7 +166,7 @@ bool MotionMonitor::follow_zero(const MotionSample& sample) {
 Result<void> MotionMonitor::check_gap(const MotionSample& sample) const {
   if (samples_.empty() || sample.time - samples_.back().time <= kLongestGap) return {};
   const auto gap = std::chrono::duration<double>(sample.time - samples_.back().time).count();
-  return stopped_by(node_, fmt::format("was not looked at for {} s while moving", number_text(gap)),
+  return stopped_by(node_, formatted("was not looked at for {} s while moving", number_text(gap)),
                     "was this program suspended, or is the link slow? A motion needs a look every second");
 }
 
@@ -175,8 +175,8 @@ Result<void> MotionMonitor::check_mode(const Result<Bytes>& answer) {
   if (!answer) mode_.reset();  // It does not tell it.
   if (!answer || answer->empty() || static_cast<std::int8_t>(load_le(*answer)) == *mode_) return {};
   return stopped_by(node_,
-                    fmt::format("left its mode while moving: 6061h shows {} instead of {}",
-                                static_cast<int>(static_cast<std::int8_t>(load_le(*answer))), int{*mode_}),
+                    formatted("left its mode while moving: 6061h shows {} instead of {}",
+                              static_cast<int>(static_cast<std::int8_t>(load_le(*answer))), int{*mode_}),
                     "another master, or a PDO, may have written 6060h");
 }
 
@@ -188,16 +188,15 @@ Result<void> MotionMonitor::check_speeds() const {
   const auto unit = units_->unit(objects::kVelocityActual);
   const auto by_position = speeds_.shown_by_position();
   if (!by_position)
-    return stopped_by(
-        node_,
-        fmt::format("reports a speed of {} {} (606Ch), and its position (6064h) stands still or "
-                    "goes the other way",
-                    number_text(speeds_.shown()), unit),
-        "check the encoder, and polarity (607Eh)");
+    return stopped_by(node_,
+                      formatted("reports a speed of {} {} (606Ch), and its position (6064h) stands still or "
+                                "goes the other way",
+                                number_text(speeds_.shown()), unit),
+                      "check the encoder, and polarity (607Eh)");
   return stopped_by(
       node_,
-      fmt::format("reports a speed of {} {} (606Ch), but its position (6064h) changes by {} {}",
-                  number_text(speeds_.shown()), unit, number_text(*by_position), unit),
+      formatted("reports a speed of {} {} (606Ch), but its position (6064h) changes by {} {}",
+                number_text(speeds_.shown()), unit, number_text(*by_position), unit),
       "one of them is wrong, or their unit: check the encoder, --turn, gear (6091h) and polarity (607Eh)");
 }
 
@@ -218,7 +217,7 @@ Result<void> MotionMonitor::check_events() {
       const auto faults = drive::faults_of(profile.faults, profile.rules.emergency, told->code, told->vendor);
       const bool message = !faults.empty() && faults.front()->kind == drive::Fault::Kind::status;
       if (told->code != 0 && !message)
-        out = stopped_by(node_, fmt::format("sent emergency 0x{:04X} while moving", told->code),
+        out = stopped_by(node_, formatted("sent emergency 0x{:04X} while moving", told->code),
                          "`fault show` explains it");
     }
     if (std::holds_alternative<session::NodeEvent::BootUp>(event.what))
@@ -235,8 +234,8 @@ Result<void> MotionMonitor::check_state(const MotionSample& sample) const {
   const auto state = drive::decode_state(sample.statusword);
   if (state == drive::DriveState::operation_enabled) return {};
   return stopped_by(node_,
-                    fmt::format("left \"operation enabled\" while moving: {} (statusword 0x{:04X})",
-                                drive::name(state), sample.statusword),
+                    formatted("left \"operation enabled\" while moving: {} (statusword 0x{:04X})",
+                              drive::name(state), sample.statusword),
                     "see `fault show`; an input, another master or the panel may have disabled it");
 }
 
@@ -246,8 +245,8 @@ Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
     if (!limit || !value || std::abs(*value) <= *limit) return Result<void>{};
     const auto numbers = told_apart(*value, *limit);
     return Result<void>(stopped_by(node_,
-                                   fmt::format("{} of {} {} exceeds its limit of {}", what, numbers.first,
-                                               units_->unit(object_of(signal)), numbers.second),
+                                   formatted("{} of {} {} exceeds its limit of {}", what, numbers.first,
+                                             units_->unit(object_of(signal)), numbers.second),
                                    "raise the limit, if this is intended"));
   };
   for (const auto& done :

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_judgement.hpp"
@@ -58,8 +58,8 @@ class Moving {
     }
     return fail(
         motion_->error(Errc::negative,
-                       fmt::format("did not reach {} {} in the expected time; it is at {}",
-                                   number_text(plan_->value), plan_->unit, number_text(last_)),
+                       formatted("did not reach {} {} in the expected time; it is at {}",
+                                 number_text(plan_->value), plan_->unit, number_text(last_)),
                        "is it blocked, is its speed limited, or is the position window (6067h) too narrow?"));
   }
   const MotionJudgement& judgement() const { return judgement_; }
@@ -124,8 +124,8 @@ class Moving {
     if (away <= std::max(window_, way * kMostAstray)) return {};
     return fail(
         motion_->error(Errc::negative,
-                       fmt::format("goes the wrong way: it is at {} {}, further from {} than at the start",
-                                   number_text(*position), plan_->unit, number_text(plan_->value)),
+                       formatted("goes the wrong way: it is at {} {}, further from {} than at the start",
+                                 number_text(*position), plan_->unit, number_text(plan_->value)),
                        "check encoder direction, polarity (607Eh), motor wiring"));
   }
 
@@ -147,8 +147,8 @@ Result<void> check_precision(const MotionUnits& units, const MotionPlan& plan) {
   const double step = std::abs(plan.value) * kStepOfFloat;
   if (!is_float(units.meaning(objects::kTargetPosition)) || step <= near(plan)) return {};
   return fail(Errc::usage,
-              fmt::format("{} is too far: a number of 32 bits has steps of {} there",
-                          units.words(plan.value, plan.unit), units.words(step, plan.unit)),
+              formatted("{} is too far: a number of 32 bits has steps of {} there",
+                        units.words(plan.value, plan.unit), units.words(step, plan.unit)),
               "choose a target nearer to zero; `home` sets a new one");
 }
 
@@ -180,7 +180,7 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   // Kept within limits silently it would go elsewhere.
   if (!said || std::abs(said->value - plan.value) > std::max(step, std::abs(plan.value) * 1e-6))
     return fail(motion.error(
-        Errc::usage, fmt::format("{} {} is out of the range of 607Ah", number_text(plan.value), plan.unit)));
+        Errc::usage, formatted("{} {} is out of the range of 607Ah", number_text(plan.value), plan.unit)));
   const double from = move.relative ? here.value : 0;
   // What was told must not be lost in a step; the zero it is counted from is one.
   const auto rounding = drive::judge_rounding({asked->value, said->value - from, step, plan.unit});
@@ -200,8 +200,8 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
   const auto here = motion.units().physical(objects::kPositionActual, *answer).value_or(Physical{});
   if (!plan.from || std::abs(here.value - *plan.from) <= near(plan)) return {};
   return fail(motion.error(Errc::refused,
-                           fmt::format("has moved since the preflight check: it was at {} {} and is at {}",
-                                       number_text(*plan.from), plan.unit, number_text(here.value)),
+                           formatted("has moved since the preflight check: it was at {} {} and is at {}",
+                                     number_text(*plan.from), plan.unit, number_text(here.value)),
                            "nothing was moved; run the command again"));
 }
 
@@ -243,8 +243,8 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   if (const auto window = motion.limits().travel; window && std::abs(plan.way) > *window)
     return fail(
         motion.error(Errc::refused,
-                     fmt::format("the way of {} is longer than --window allows, {}",
-                                 units.words(plan.way, plan.unit), units.words(*window, plan.unit)),
+                     formatted("the way of {} is longer than --window allows, {}",
+                               units.words(plan.way, plan.unit), units.words(*window, plan.unit)),
                      "nothing was moved; --window is the longest way of one motion, from where it begins"));
   if (const auto ramps =
           motion.add_ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);
@@ -256,8 +256,8 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   if (motion.rules().handshake)
     for (const auto word : {kEnabled, kNewSetpoint, kEnabled})
       plan.moving.emplace_back(objects::kControlword, store_le(word, 2));
-  plan.summary = fmt::format("go by {}, to {}, at {}", units.words(plan.way, plan.unit),
-                             units.words(plan.value, plan.unit), units.words(plan.speed, fast->unit));
+  plan.summary = formatted("go by {}, to {}, at {}", units.words(plan.way, plan.unit),
+                           units.words(plan.value, plan.unit), units.words(plan.speed, fast->unit));
   motion.set_standstill(plan.speed);
   motion.supervise_overspeed(plan.speed);
   return plan;

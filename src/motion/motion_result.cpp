@@ -6,6 +6,7 @@
 
 #include "base/csv.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
@@ -83,8 +84,8 @@ constexpr Unverified kNotOff{
 std::string unverified_text(const MotionEnd& end, const WatchdogPlan& watchdog, std::string_view cause = {},
                             std::uint8_t node = 0) {
   const auto& words = end.statusword == 0 ? kNotSeen : kNotOff;
-  return fmt::format(fmt::runtime(cause.empty() ? words.alone : words.because), drive::name(end.state),
-                     end.statusword, expectation(watchdog, end.watched), cause, node);
+  return formatted(fmt::runtime(cause.empty() ? words.alone : words.because), drive::name(end.state),
+                   end.statusword, expectation(watchdog, end.watched), cause, node);
 }
 
 /// A drive that may still be energised is worse than whatever ended the motion.
@@ -106,7 +107,7 @@ std::string_view result_text(const MotionReport& done) {
 
 Error ended(std::uint8_t node, const MotionReport& done) {
   auto error = done.outcome.error();
-  error.message += fmt::format("; the drive is in {}", end_text(done.end, done.watchdog));
+  error.message += formatted("; the drive is in {}", end_text(done.end, done.watchdog));
   if (!error.node) error.node = node;
   return error;
 }
@@ -115,8 +116,8 @@ Error ended(std::uint8_t node, const MotionReport& done) {
 
 std::string end_text(const MotionEnd& end, const WatchdogPlan& watchdog) {
   if (end.verified)
-    return fmt::format("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
-                       end.quick_stop ? " after a quick stop" : "", end.statusword);
+    return formatted("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
+                     end.quick_stop ? " after a quick stop" : "", end.statusword);
   return unverified_text(end, watchdog);
 }
 
@@ -129,16 +130,16 @@ Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
     desk.errors.push_back(ended(node, done));
   else if (!done.differences.empty())
     desk.errors.push_back(
-        drive_error(Errc::negative, node, fmt::format("done, but {}", fmt::join(done.differences, "; ")),
+        drive_error(Errc::negative, node, formatted("done, but {}", fmt::join(done.differences, "; ")),
                     "check the drive's limits (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
-  for (const auto& text : done.unchecked) desk.notices.push_back(fmt::format("node {}: {}", node, text));
+  for (const auto& text : done.unchecked) desk.notices.push_back(formatted("node {}: {}", node, text));
   for (const auto& left : done.end.left)
     desk.errors.push_back(
         drive_error(Errc::negative, node, left,
                     left.starts_with("object ")
                         ? "once the drive answers, `write` puts it back, with these bytes behind hex:"
                         : "check the drive before using it"));
-  for (const auto& note : done.end.notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
+  for (const auto& note : done.end.notes) desk.notices.push_back(formatted("node {}: {}", node, note));
   for (const auto& event : done.events)
     desk.notices.push_back(show::notice_text(event, desk.profile, desk.chinese, &desk.session->network()));
   const double length =
@@ -177,8 +178,8 @@ std::string weight_column(PreflightItem::Weight weight, bool chinese) {
 std::string preflight_text(const std::vector<PreflightItem>& items, bool chinese) {
   std::string out;
   for (const auto& item : items)
-    out += fmt::format("{}{}{}{}\n", weight_column(item.weight, chinese), printable(item.what),
-                       item.what.empty() ? "" : ": ", printable(item.text));
+    out += formatted("{}{}{}{}\n", weight_column(item.weight, chinese), printable(item.what),
+                     item.what.empty() ? "" : ": ", printable(item.text));
   return out;
 }
 
@@ -191,15 +192,15 @@ Record sample_record(const MotionSample& sample, TimePoint begin) {
 }
 
 std::string sample_line(const MotionSample& sample, TimePoint begin, const MotionUnits& units) {
-  auto out = fmt::format("{:8.3f} s", seconds_since(sample, begin));
+  auto out = formatted("{:8.3f} s", seconds_since(sample, begin));
   constexpr std::array<std::string_view, kSignals> kShort{"", "", "torque ", "error "};
   for (const auto signal : kEverySignal) {
     const auto value = sample[signal];
     if (!value) continue;
     const auto unit = units.unit(object_of(signal));
     const auto shown = units.of_load(*value, unit).value_or(Physical{*value, unit});
-    const auto text = fmt::format("{}{} {}", kShort[static_cast<std::size_t>(signal)],
-                                  number_text(shown.value), shown.unit);
+    const auto text =
+        formatted("{}{} {}", kShort[static_cast<std::size_t>(signal)], number_text(shown.value), shown.unit);
     out += "  " + pad_left(text, 15);
   }
   return out;
@@ -212,7 +213,7 @@ Result<void> write_csv(const std::string& path, const std::vector<MotionSample>&
     if (units.has(object_of(signal))) out += ',' + csv_heading(name(signal), units.unit(object_of(signal)));
   out += '\n';
   for (const auto& sample : samples) {
-    out += fmt::format("{:.6f},0x{:04X}", seconds_since(sample, samples.front().time), sample.statusword);
+    out += formatted("{:.6f},0x{:04X}", seconds_since(sample, samples.front().time), sample.statusword);
     for (const auto signal : kEverySignal) {
       if (!units.has(object_of(signal))) continue;
       const auto value = sample[signal];

@@ -1,9 +1,8 @@
 #include "motion/motion_run.hpp"
 
-#include <fmt/format.h>
-
 #include "base/duration.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/kept_turn.hpp"
@@ -55,10 +54,10 @@ report::List planned_step(const show::Desk& desk, const Motion& motion,
   const auto object = message.write->object;
   const auto& data = *message.write->data;
   const auto value = motion.units().physical(object, data);
-  std::string text = value ? fmt::format("{} {}", number_text(value->value), value->unit) : to_hex(data);
+  std::string text = value ? formatted("{} {}", number_text(value->value), value->unit) : to_hex(data);
   const bool of_communication = object.index >= 0x1000 && object.index < 0x2000;
   if (object == objects::kControlword || of_communication)
-    text = fmt::format("0x{:0{}X}", load_le(data), 2 * data.size());
+    text = formatted("0x{:0{}X}", load_le(data), 2 * data.size());
   if (object == objects::kModeOfOperation)
     text = mode_text(*desk.profile, static_cast<std::int8_t>(load_le(data)), desk.chinese);
   return {message.step, to_string(object), text, report::text_or_null(message.when), frame};
@@ -92,9 +91,9 @@ Result<void> ask(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
                  const std::vector<PreflightItem>& items, const std::vector<std::string>& notes) {
   desk.tell(preflight_text(items, desk.chinese));
   const auto column = weight_column(PreflightItem::Weight::note, desk.chinese);
-  for (const auto& note : notes) desk.tell(fmt::format("{}{}\n", column, note));
+  for (const auto& note : notes) desk.tell(formatted("{}{}\n", column, note));
   return desk.confirm(
-      fmt::format("The motor of node {} will move: {}. Is the machine clear?", node, plan.summary));
+      formatted("The motor of node {} will move: {}. Is the machine clear?", node, plan.summary));
 }
 
 void take(const KnownTurn& known, MotionOptions& options) {
@@ -107,8 +106,7 @@ void take(const KnownTurn& known, MotionOptions& options) {
 AskAgain ask_again(show::Desk& desk, std::uint8_t node) {
   return [&desk, node](const std::vector<PreflightItem>& unseen) {
     desk.tell(preflight_text(unseen, desk.chinese));
-    return desk.confirm(
-        fmt::format("Node {} reports this in OP, and did not report it before. Go on?", node));
+    return desk.confirm(formatted("Node {} reports this in OP, and did not report it before. Go on?", node));
   };
 }
 
@@ -142,12 +140,12 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   display = Display(desk, motion);
   if (const auto ready = motion.prepare(); !ready) return fail(ready.error());
   auto notes = turn_notes(motion.units(), known);
-  for (const auto& note : notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
+  for (const auto& note : notes) desk.notices.push_back(formatted("node {}: {}", node, note));
   const auto plan = run.plan(motion);
   if (!plan) return fail(plan.error());
   const auto items = motion.look(desk.chinese);
   if (!items) return fail(items.error());
-  for (const auto& note : plan->notes) desk.notices.push_back(fmt::format("node {}: {}", node, note));
+  for (const auto& note : plan->notes) desk.notices.push_back(formatted("node {}: {}", node, note));
   notes.insert(notes.end(), plan->notes.begin(), plan->notes.end());
   auto possible = check_preflight(*items, node);
   if (possible) possible = check_mode(*desk.session, *desk.profile, node, plan->mode);

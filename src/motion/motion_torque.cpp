@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_judgement.hpp"
@@ -27,20 +27,20 @@ Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
     if (held->value > cap * (1 + drive::kMostLoss)) {
       const auto numbers = told_apart(cap, held->value);
       return fail(Errc::usage,
-                  fmt::format("--limit: {} {} cannot be set in the drive ({}): its nearest limit is {} {}",
-                              numbers.first, unit, to_string(*object), numbers.second, held->unit),
+                  formatted("--limit: {} {} cannot be set in the drive ({}): its nearest limit is {} {}",
+                            numbers.first, unit, to_string(*object), numbers.second, held->unit),
                   "raise the limit");
     }
     plan.settings.emplace_back(*object, *data);
     if (*object == objects::kTargetVelocity) plan.kept_target = *object;
     if (units.meaning(*object).effect == od::Effect::restart)
-      plan.tell(fmt::format(
+      plan.tell(formatted(
           "the drive's speed limit in torque mode ({}) is set to {} {}, but may take effect only after a "
           "restart: servoctl monitors the speed and stops above {} {}",
           to_string(*object), number_text(held->value), held->unit, number_text(cap * kOvershoot), unit));
   }
   if (!plan.settings.empty()) return {};
-  plan.tell(fmt::format(
+  plan.tell(formatted(
       "the manual gives no speed limit of the drive in torque mode: servoctl checks the speed every {} ms "
       "and stops above {} {}",
       std::chrono::duration_cast<std::chrono::milliseconds>(MotionMonitor::kPeriod).count(),
@@ -63,10 +63,10 @@ Result<void> check_torque(const Motion& motion, const Physical& torque) {
   const auto numbers = told_apart(std::abs(torque.value), *cap);
   return fail(
       motion.error(Errc::refused,
-                   fmt::format("the torque of {} {} is above the limit of {} {}", numbers.first, torque.unit,
-                               numbers.second, torque.unit),
-                   fmt::format("`--max-torque {}{}` raises it, if machine and motor can take it, up to 6072h",
-                               numbers.first, torque.unit)));
+                   formatted("the torque of {} {} is above the limit of {} {}", numbers.first, torque.unit,
+                             numbers.second, torque.unit),
+                   formatted("`--max-torque {}{}` raises it, if machine and motor can take it, up to 6072h",
+                             numbers.first, torque.unit)));
 }
 
 }  // namespace
@@ -100,9 +100,9 @@ Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
             ? ""
             : "add --turn (6064h increments per revolution), if the drive does not report it"));
   motion.set_standstill(*cap);
-  plan.summary = fmt::format("apply a torque of {} {} for {}, no faster than {} {}", number_text(value.value),
-                             value.unit, servoctl::to_string(torque.length), number_text(*cap),
-                             motion.units().unit(objects::kTargetVelocity));
+  plan.summary = formatted("apply a torque of {} {} for {}, no faster than {} {}", number_text(value.value),
+                           value.unit, servoctl::to_string(torque.length), number_text(*cap),
+                           motion.units().unit(objects::kTargetVelocity));
   return plan;
 }
 

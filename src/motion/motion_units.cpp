@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/assumed_unit.hpp"
@@ -114,8 +115,8 @@ Error MotionUnits::unproven(ObjectAddress object, std::string_view text) const {
   const auto named_by = naming(drive::meaning(drive::target_at(profile_, object), node_));
   return make_error(
       Errc::usage,
-      fmt::format("'{}': the unit of {} is not known: neither the drive's data nor the drive ({}) states it",
-                  text, to_string(object), to_string(named_by)),
+      formatted("'{}': the unit of {} is not known: neither the drive's data nor the drive ({}) states it",
+                text, to_string(object), to_string(named_by)),
       "write the plain number that the drive takes; its manual gives the unit. A wrong unit can turn the "
       "motor at its maximum speed");
 }
@@ -129,9 +130,9 @@ Error MotionUnits::unusable(ObjectAddress object, std::string_view text, const s
                             Error error) const {
   const auto what = meaning(object);
   if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
-    error.hint += fmt::format("; --turn gives the 6064h increments per revolution{}",
-                              profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures them");
-  if (motor != text) error.message = fmt::format("'{}' of the load: {}", text, error.message);
+    error.hint += formatted("; --turn gives the 6064h increments per revolution{}",
+                            profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures them");
+  if (motor != text) error.message = formatted("'{}' of the load: {}", text, error.message);
   return error;
 }
 
@@ -151,18 +152,16 @@ Result<void> MotionUnits::check_unit(const drive::Meaning& what, ObjectAddress o
     if (converts(what, one)) units.push_back(one);
   if (!converts(what, what.unit) || std::find(units.begin(), units.end(), what.unit) == units.end())
     units.push_back(what.unit);
-  auto hint = units.size() == 1 ? fmt::format("its unit here is {}", units.front())
-                                : fmt::format("its unit here is one of these: {}", fmt::join(units, ", "));
-  if (given && !of_the_load && drive::parse_load_unit(fmt::format("1 {}", given->unit), 1))
-    append(
-        hint,
-        fmt::format("as a unit of the load, {} needs `per_turn` of the axis in a cabinet file", given->unit),
-        "; ");
+  auto hint = units.size() == 1 ? formatted("its unit here is {}", units.front())
+                                : formatted("its unit here is one of these: {}", fmt::join(units, ", "));
+  if (given && !of_the_load && drive::parse_load_unit(formatted("1 {}", given->unit), 1))
+    append(hint,
+           formatted("as a unit of the load, {} needs `per_turn` of the axis in a cabinet file", given->unit),
+           "; ");
   const bool bare = parse_integer(trim(text)) || parse_real(trim(text));
-  if (bare) return fail(Errc::usage, fmt::format("'{}' has no unit", text), std::move(hint));
-  if (!given)
-    return fail(Errc::usage, fmt::format("'{}' is not a number with a unit", text), std::move(hint));
-  return fail(Errc::usage, fmt::format("'{}': {} cannot be converted to {}", text, given->unit, what.unit),
+  if (bare) return fail(Errc::usage, formatted("'{}' has no unit", text), std::move(hint));
+  if (!given) return fail(Errc::usage, formatted("'{}' is not a number with a unit", text), std::move(hint));
+  return fail(Errc::usage, formatted("'{}': {} cannot be converted to {}", text, given->unit, what.unit),
               std::move(hint));
 }
 
@@ -278,9 +277,9 @@ std::optional<Physical> MotionUnits::of_load(double value, std::string_view unit
 
 std::string MotionUnits::words(double value, std::string_view unit) const {
   auto out = number_text(value);
-  if (!unit.empty()) out += fmt::format(" {}", unit);
+  if (!unit.empty()) out += formatted(" {}", unit);
   if (const auto load = of_load(value, unit))
-    out += fmt::format(" ({} {})", number_text(load->value), load->unit);
+    out += formatted(" ({} {})", number_text(load->value), load->unit);
   return out;
 }
 

@@ -1,8 +1,8 @@
 // How a motion is watched until it is over, or has to end.
-#include <fmt/format.h>
 #include <algorithm>
 #include <new>
 
+#include "base/format.hpp"
 #include "motion/motion.hpp"
 #include "session/option_scope.hpp"
 
@@ -41,13 +41,12 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
       return fail(fits.error());
     }
     if (const auto foreign = guard_ ? guard_->foreign_command() : std::nullopt)
-      return fail(
-          error(Errc::negative,
-                foreign->by_pdo()
-                    ? fmt::format("another master sent a PDO with object {} while moving",
-                                  to_string(foreign->object))
-                    : fmt::format("another master wrote object {} while moving", to_string(foreign->object)),
-                std::string(MotionGuard::kTwoMasters)));
+      return fail(error(
+          Errc::negative,
+          foreign->by_pdo()
+              ? formatted("another master sent a PDO with object {} while moving", to_string(foreign->object))
+              : formatted("another master wrote object {} while moving", to_string(foreign->object)),
+          std::string(MotionGuard::kTwoMasters)));
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));
     const auto enough = done(*sample);

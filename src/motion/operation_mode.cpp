@@ -1,7 +1,6 @@
 #include "motion/operation_mode.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
@@ -15,7 +14,7 @@ constexpr Duration kModePause = std::chrono::milliseconds(5);
 
 std::string known_modes(const drive::Meaning& meaning) {
   std::string out;
-  for (const auto& label : *meaning.labels) append(out, fmt::format("{} {}", label.value, label.label));
+  for (const auto& label : *meaning.labels) append(out, formatted("{} {}", label.value, label.label));
   return out;
 }
 
@@ -24,8 +23,8 @@ std::string known_modes(const drive::Meaning& meaning) {
 std::string mode_text(const drive::Profile& profile, std::int8_t mode, bool chinese) {
   const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeDisplay), 0);
   const auto* label = drive::label_of(meaning, od::Value(std::int64_t{mode}));
-  if (label == nullptr) return mode == 0 ? std::string("0 none") : fmt::format("{}", mode);
-  return fmt::format("{} {}", mode, chinese && !label->label_zh.empty() ? label->label_zh : label->label);
+  if (label == nullptr) return mode == 0 ? std::string("0 none") : formatted("{}", mode);
+  return formatted("{} {}", mode, chinese && !label->label_zh.empty() ? label->label_zh : label->label);
 }
 
 Result<std::int8_t> read_mode(session::Session& session, std::uint8_t node) {
@@ -38,7 +37,7 @@ Result<void> check_mode(session::Session& session, const drive::Profile& profile
                         std::int8_t mode) {
   const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
   if (meaning.labels != nullptr && drive::label_of(meaning, od::Value(std::int64_t{mode})) == nullptr)
-    return fail(drive_error(Errc::refused, node, fmt::format("this family has no mode {}", mode),
+    return fail(drive_error(Errc::refused, node, formatted("this family has no mode {}", mode),
                             "modes: " + known_modes(meaning)));
   if (mode < 1 || mode > 32 || profile.dictionary.find(objects::kSupportedModes) == nullptr) return {};
   const auto supported = session.upload(node, objects::kSupportedModes);
@@ -47,7 +46,7 @@ Result<void> check_mode(session::Session& session, const drive::Profile& profile
   if (bits == 0 || (bits >> static_cast<unsigned>(mode - 1) & 1U) != 0) return {};
   return fail(drive_error(
       Errc::refused, node,
-      fmt::format("the drive does not support mode {} (6502h is 0x{:X})", mode_text(profile, mode), bits),
+      formatted("the drive does not support mode {} (6502h is 0x{:X})", mode_text(profile, mode), bits),
       "6502h lists its modes: bit 0 is mode 1"));
 }
 
@@ -69,8 +68,8 @@ Result<void> set_mode(session::Session& session, const drive::Profile& profile, 
     if (*now_in == mode) return {};
     if (session.now() >= end)
       return fail(drive_error(Errc::negative, node,
-                              fmt::format("was set to mode {} but stays in mode {} (6061h)",
-                                          mode_text(profile, mode), mode_text(profile, *now_in)),
+                              formatted("was set to mode {} but stays in mode {} (6061h)",
+                                        mode_text(profile, mode), mode_text(profile, *now_in)),
                               "is it in the control mode for CANopen motion? `info` names what it needs"));
     if (const auto paused = pause(session, kModePause); !paused) return paused;
   }

@@ -1,7 +1,6 @@
 #include "motion/other_axes.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/power.hpp"
@@ -40,9 +39,9 @@ bool OtherAxis::may_be_energised() const {
 
 std::string OtherAxis::text() const {
   const auto object = to_string(statusword_object());
-  return statusword ? fmt::format("axis {} ({}) is in {}", number, object,
-                                  drive::name(drive::decode_state(*statusword)))
-                    : fmt::format("axis {} ({}) does not tell its state", number, object);
+  return statusword ? formatted("axis {} ({}) is in {}", number, object,
+                                drive::name(drive::decode_state(*statusword)))
+                    : formatted("axis {} ({}) does not tell its state", number, object);
 }
 
 std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profile* profile,
@@ -63,8 +62,8 @@ std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profil
 std::string axes_text(const std::vector<OtherAxis>& others) {
   std::string states;
   for (const auto& axis : others) append(states, axis.text(), "; ");
-  return fmt::format("the device has {} axes; this is about axis 1 ({}) only; {}", others.size() + 1,
-                     to_string(objects::kStatusword), states);
+  return formatted("the device has {} axes; this is about axis 1 ({}) only; {}", others.size() + 1,
+                   to_string(objects::kStatusword), states);
 }
 
 Result<void> stop_axes(session::Session& session, std::uint8_t node, std::vector<OtherAxis>& axes,
@@ -84,7 +83,7 @@ Result<void> stop_axes(session::Session& session, std::uint8_t node, std::vector
     const bool stands = !disable && axis.statusword &&
                         drive::decode_state(*axis.statusword) == drive::DriveState::quick_stop_active;
     if (out && axis.may_be_energised() && !stands)
-      out = fail(drive_error(Errc::negative, node, fmt::format("{}: it may be energised", axis.text()),
+      out = fail(drive_error(Errc::negative, node, formatted("{}: it may be energised", axis.text()),
                              "switch off the supply"));
   }
   return out;

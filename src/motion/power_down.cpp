@@ -1,10 +1,10 @@
 #include "motion/power_down.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/kept_op.hpp"
@@ -91,7 +91,7 @@ session::SdoRequest PowerDown::read(ObjectAddress object) const {
 
 /// Of the statusword, for messages.
 std::string PowerDown::word() const {
-  return result_.statusword ? fmt::format("statusword 0x{:04X}", *result_.statusword)
+  return result_.statusword ? formatted("statusword 0x{:04X}", *result_.statusword)
                             : std::string("its statusword was not read");
 }
 
@@ -211,8 +211,8 @@ void PowerDown::wake_or_cut(bool cutting, TimePoint now) {
   }
   const auto sent = order(session::NodeState::pre_operational);
   result_.notes.push_back(
-      is_on_ring() ? fmt::format("it did not answer and was sent {}", sent)
-                   : fmt::format("it did not answer and was sent {}: a stopped node does not answer", sent));
+      is_on_ring() ? formatted("it did not answer and was sent {}", sent)
+                   : formatted("it did not answer and was sent {}: a stopped node does not answer", sent));
   back_to_ = cutting ? State::cut : State::quick_stop;
   stop_since_.reset();
   state_ = State::wake;
@@ -287,14 +287,14 @@ std::vector<PowerDownResult> take_down(session::Session& session, std::vector<Po
   std::vector<Dialogue*> dialogues;
   std::string nodes;
   for (auto& plan : plans) {
-    append(nodes, fmt::format("{}", plan.node));
+    append(nodes, formatted("{}", plan.node));
     plan.network = &session.network();
     drives.push_back(std::make_unique<PowerDown>(std::move(plan)));
     dialogues.push_back(drives.back().get());
   }
   session::LinkWait link(session, plans.size() > kMostNamed ? std::string("stopping all nodes")
-                                  : plans.size() == 1       ? fmt::format("stopping node {}", nodes)
-                                                            : fmt::format("stopping nodes {}", nodes));
+                                  : plans.size() == 1       ? formatted("stopping node {}", nodes)
+                                                            : formatted("stopping nodes {}", nodes));
   hold_all(session, dialogues, [&](const Error& lost) { return link.comes_back(lost); });
   std::vector<PowerDownResult> out;
   for (const auto& drive : drives) {

@@ -1,8 +1,8 @@
 // What each answer on a drive's way down leads to.
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/power.hpp"
 #include "motion/power_down.hpp"
@@ -155,7 +155,7 @@ void PowerDown::on_holding(const Result<Bytes>& answer, TimePoint now) {
   const bool enables = (word & kEnables) == kEnables;
   if (enables) {
     result_.written = false;
-    untaken_ = fmt::format("the write was acknowledged, but it still reads 0x{:04X}", word);
+    untaken_ = formatted("the write was acknowledged, but it still reads 0x{:04X}", word);
     if (++held_ < kTries) return enter(stops ? State::quick_stop : State::cut, now);
   }
   if (stops) return end_stop();
@@ -169,7 +169,7 @@ void PowerDown::cut_again(TimePoint now) {
   if ((has_seen_ && brakes(seen_)) || means_ >= kOtherMeans) return end_cut();
   back_to_ = State::cut;
   const auto state = means_ == 0 ? session::NodeState::pre_operational : last_state();
-  result_.notes.push_back(fmt::format("it was sent {}, because it did not obey", order(state)));
+  result_.notes.push_back(formatted("it was sent {}, because it did not obey", order(state)));
   enter(means_++ == 0 ? State::wake : State::last_state, now);
 }
 
@@ -196,8 +196,8 @@ void PowerDown::end_stop() {
   if (!drive::is_energised(state) && !result_.written) {
     return finish(fail(
         drive_error(Errc::negative, plan_.node,
-                    fmt::format("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
-                                drive::name(state), kQuickStopWord, untaken_),
+                    formatted("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
+                              drive::name(state), kQuickStopWord, untaken_),
                     "`disable` it, or switch off the supply")));
   }
   if (!drive::is_energised(state) || result_.stopped) return finish({});
@@ -205,7 +205,7 @@ void PowerDown::end_stop() {
   finish(fail(drive_error(
       Errc::negative, plan_.node,
       followed ? std::string("is in quick stop active and does not report standstill")
-               : fmt::format("does not follow the quick stop; it is in {} ({})", drive::name(state), word()),
+               : formatted("does not follow the quick stop; it is in {} ({})", drive::name(state), word()),
       followed ? "check the motor; `disable` de-energises it"
                : "does another master control it? `disable`, or switch off the supply")));
 }
@@ -217,16 +217,16 @@ void PowerDown::end_cut() {
   if (is_without_power(state))
     return finish(fail(
         drive_error(Errc::negative, plan_.node,
-                    fmt::format("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
-                                drive::name(state), kDisableVoltageWord, untaken_),
+                    formatted("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
+                              drive::name(state), kDisableVoltageWord, untaken_),
                     "switch off the supply before anybody approaches the machine")));
   if (brakes(state))
     return finish(
         fail(drive_error(Errc::negative, plan_.node, "is still braking after a fault, and may be energised",
                          "`status` shows its state")));
   finish(fail(drive_error(Errc::negative, plan_.node,
-                          fmt::format("does not obey 0000h, written {} times; it is in {} ({})", tries_,
-                                      drive::name(state), word()),
+                          formatted("does not obey 0000h, written {} times; it is in {} ({})", tries_,
+                                    drive::name(state), word()),
                           "does another master control it? Switch off the supply")));
 }
 

@@ -1,10 +1,10 @@
 #include "motion/preflight.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/provenance.hpp"
@@ -38,8 +38,8 @@ constexpr std::array kShown{
 
 /// The manual does not state the unit of everything.
 std::string value_text(const Physical& value) {
-  return value.unit.empty() ? fmt::format("{} (unit not known)", number_text(value.value))
-                            : fmt::format("{} {}", number_text(value.value), value.unit);
+  return value.unit.empty() ? formatted("{} (unit not known)", number_text(value.value))
+                            : formatted("{} {}", number_text(value.value), value.unit);
 }
 
 class Preflight {
@@ -85,7 +85,7 @@ class Preflight {
     const bool asleep = waits && sleeps();
     const bool bad = fault || drive::is_energised(state) || (waits && !asleep);
     auto text =
-        fmt::format("{} (statusword 0x{:04X})", chinese_ ? drive::name_zh(state) : drive::name(state), *word);
+        formatted("{} (statusword 0x{:04X})", chinese_ ? drive::name_zh(state) : drive::name(state), *word);
     if (fault) text += ": `fault show` says why, `fault reset` resets it once the cause is gone";
     if (!fault && drive::is_energised(state)) text += ": it is or may be enabled; `disable` it first";
     if (asleep)
@@ -119,8 +119,8 @@ class Preflight {
     const auto& source = request_.source;
     names_source_ = source.has_value();
     const auto start = power.start_command();
-    auto text = source ? fmt::format("{}: {}", kLead, source->cause())
-                       : fmt::format("{}, the drive may not obey the bus: {}", kLead, kRemoteCauses);
+    auto text = source ? formatted("{}: {}", kLead, source->cause())
+                       : formatted("{}, the drive may not obey the bus: {}", kLead, kRemoteCauses);
     if (!source && !start.empty()) text += "; or it sets the bit in the state operational only";
     if (request_.ignores_remote) {
       add(Weight::caution, "remote", std::move(text));
@@ -130,9 +130,9 @@ class Preflight {
     if (source)
       way = source->remedy(units_->profile(), node_);
     else if (!start.empty())
-      way = fmt::format("`{}`, or {}", start, way);
+      way = formatted("`{}`, or {}", start, way);
     items_.push_back({Weight::stop, "remote", std::move(text),
-                      fmt::format("{}; --ignore-remote goes on after a question", way)});
+                      formatted("{}; --ignore-remote goes on after a question", way)});
   }
 
   Result<void> look_at_inputs() {
@@ -179,17 +179,17 @@ class Preflight {
     if (text.empty()) text = "no limit, no home switch";
     if (rules.is_assumed("motion.inputs_active_low"))
       text += " (assumed: the manual does not state the active level)";
-    add(limit ? Weight::caution : Weight::good, "inputs", fmt::format("60FDh is 0x{:08X}: {}", word, text));
+    add(limit ? Weight::caution : Weight::good, "inputs", formatted("60FDh is 0x{:08X}: {}", word, text));
   }
 
   void tell_owed() {
     if (request_.owed.unread)
       add(Weight::caution, "restart",
-          fmt::format("what waits for a restart is not known: {}", request_.owed.unread->message));
+          formatted("what waits for a restart is not known: {}", request_.owed.unread->message));
     if (request_.owed.values.empty()) return;
     add(Weight::caution, "restart",
-        fmt::format("{}: {}", show::owed_lead(request_.owed.values),
-                    show::owed_text(&units_->profile(), node_, request_.owed.values, chinese_)));
+        formatted("{}: {}", show::owed_lead(request_.owed.values),
+                  show::owed_text(&units_->profile(), node_, request_.owed.values, chinese_)));
   }
 
   /// What has to be set before the drive listens to CANopen.
@@ -202,8 +202,7 @@ class Preflight {
           *now, [&](const auto& value) { return value && *value != static_cast<double>(need.value); });
       if (other != now->end())
         add(Weight::caution, need.name,
-            fmt::format("it is {}, and {} is needed for CANopen: the drive may not obey", **other,
-                        need.value));
+            formatted("it is {}, and {} is needed for CANopen: the drive may not obey", **other, need.value));
     }
     return {};
   }
@@ -220,11 +219,11 @@ class Preflight {
     for (const auto& [rule, unread] : *held) {
       const auto lead =
           !unread ? std::string()
-                  : fmt::format(fmt::runtime(chinese_ ? report::chinese_word(kUnread) : kUnread), rule->name);
+                  : formatted(fmt::runtime(chinese_ ? report::chinese_word(kUnread) : kUnread), rule->name);
       add(Weight::caution, "", lead + show::caution_text(units_->profile(), *rule, chinese_));
     }
     for (const auto& [name, value] : request_.panel)
-      add(Weight::note, name, fmt::format("{} by --panel: servoctl cannot read it", value));
+      add(Weight::note, name, formatted("{} by --panel: servoctl cannot read it", value));
     return {};
   }
 
@@ -233,8 +232,8 @@ class Preflight {
     const auto& url = session_->url();
     if (url.starts_with("sim:") || url.find(":sim:") != std::string::npos) return;
     add(Weight::note, "data",
-        fmt::format("the drive data were checked against: {}",
-                    drive::provenance_text(units_->profile(), chinese_)));
+        formatted("the drive data were checked against: {}",
+                  drive::provenance_text(units_->profile(), chinese_)));
   }
 
   session::Session* session_;
@@ -274,7 +273,7 @@ Result<void> look_in_op(session::Session& session, const MotionUnits& units, std
   if (unseen.empty()) return {};
   if (!ask)
     return fail(drive_error(Errc::refused, node,
-                            fmt::format("in OP, {}: {}", unseen.front().what, unseen.front().text),
+                            formatted("in OP, {}: {}", unseen.front().what, unseen.front().text),
                             "nothing was moved; outside OP the drive did not report this"));
   if (const auto answer = ask(unseen); !answer) return answer;
   // A person may have taken time to answer.
@@ -290,7 +289,7 @@ PreflightItem watchdog_item(const WatchdogPlan& watchdog) {
 Result<void> check_preflight(const std::vector<PreflightItem>& items, std::uint8_t node) {
   for (const auto& item : items)
     if (item.weight == Weight::stop)
-      return fail(drive_error(Errc::refused, node, fmt::format("{}: {}", item.what, item.text),
+      return fail(drive_error(Errc::refused, node, formatted("{}: {}", item.what, item.text),
                               item.hint.empty() ? std::string("nothing was moved") : item.hint));
   return {};
 }

@@ -1,7 +1,6 @@
 #include "motion/producer_claim.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "session/can_network.hpp"
 
 namespace servoctl::motion {
@@ -16,13 +15,13 @@ constexpr unsigned kSlotBits = 3;
 constexpr unsigned kMostRounds = 10;
 
 Error contested(std::uint8_t id) {
-  return fail(Errc::refused,
-              fmt::format(
-                  "another master sends heartbeats as node {} (0x{:03X}): the drive would not notice if "
-                  "servoctl died",
-                  id, 0x700U + id),
-              fmt::format("stop the other master, or use another node-ID: --master-node {}",
-                          id > 1 ? id - 1 : 127))
+  return fail(
+             Errc::refused,
+             formatted("another master sends heartbeats as node {} (0x{:03X}): the drive would not notice if "
+                       "servoctl died",
+                       id, 0x700U + id),
+             formatted("stop the other master, or use another node-ID: --master-node {}",
+                       id > 1 ? id - 1 : 127))
       .value();
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/error_control.hpp"
 #include "drive/naming.hpp"
@@ -121,9 +122,9 @@ Result<std::string> against_guarding(session::Session& session, const drive::Pro
   if (!on) return fail(on.error());
   if (on->value_or(0) != 0) return {};
   const bool at_restart = drive::meaning(*alarm, node).effect == od::Effect::restart;
-  return fmt::format("a life guarding timeout is not an alarm while {} is {}{}", name,
-                     *on ? "0" : "not readable",
-                     at_restart ? " (a change takes effect when the drive starts)" : "");
+  return formatted("a life guarding timeout is not an alarm while {} is {}{}", name,
+                   *on ? "0" : "not readable",
+                   at_restart ? " (a change takes effect when the drive starts)" : "");
 }
 
 /// Life guarding where it stops the drive.
@@ -136,7 +137,7 @@ Result<void> plan_guarding(session::Session& session, const drive::Profile& prof
     return {};
   }
   const auto& alarm = profile.rules.nmt.guarding_alarm;
-  plan.remark = alarm.empty() ? "" : fmt::format("provided that {} was on when the drive started", alarm);
+  plan.remark = alarm.empty() ? "" : formatted("provided that {} was on when the drive started", alarm);
   plan.kind = WatchdogPlan::Kind::guarding;
   plan.time = 2 * kWatchdogTime;
   return {};
@@ -188,10 +189,10 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
                                    std::uint8_t node, std::optional<std::uint8_t> producer,
                                    Listening listening) {
   if (producer && *producer == node)
-    return fail(Errc::usage, fmt::format("{} is the drive's own node-ID", node),
+    return fail(Errc::usage, formatted("{} is the drive's own node-ID", node),
                 "give servoctl a different one, such as 127");
   if (producer && session.watch().state(*producer))
-    return fail(Errc::refused, fmt::format("--master-node {}: this node-ID is already in use", *producer),
+    return fail(Errc::refused, formatted("--master-node {}: this node-ID is already in use", *producer),
                 "leave it out, and servoctl takes a free node-ID");
   using Sign = session::LifeSign::Kind;
   const auto& network = session.network();
@@ -217,33 +218,32 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
 }
 
 std::string to_string(const WatchdogPlan& plan) {
-  auto then = plan.reaction.empty() ? std::string() : fmt::format("; its reaction: {}", plan.reaction);
+  auto then = plan.reaction.empty() ? std::string() : formatted("; its reaction: {}", plan.reaction);
   if (!plan.remark.empty()) then += "; " + plan.remark;
   if (plan.assumed)
     then += "; ASSUMED: the manual does not say what the motor then does";
   else if (plan.stops() != Stops::yes)
-    then += plan.option ? fmt::format("; NOT KNOWN is what the motor then does: 6007h = {} does not tell it",
-                                      *plan.option)
+    then += plan.option ? formatted("; NOT KNOWN is what the motor then does: 6007h = {} does not tell it",
+                                    *plan.option)
                         : "; NOT KNOWN is what the motor then does: no 6007h tells it";
   switch (plan.kind) {
     case WatchdogPlan::Kind::heartbeat:
-      return fmt::format("servoctl sends heartbeats as node {}: the drive notices {} after the last one{}",
-                         plan.producer, servoctl::to_string(plan.time), then);
+      return formatted("servoctl sends heartbeats as node {}: the drive notices {} after the last one{}",
+                       plan.producer, servoctl::to_string(plan.time), then);
     case WatchdogPlan::Kind::guarding:
-      return fmt::format("life guarding by servoctl: the drive notices {} after the last request{}",
-                         servoctl::to_string(plan.time), then);
+      return formatted("life guarding by servoctl: the drive notices {} after the last request{}",
+                       servoctl::to_string(plan.time), then);
     case WatchdogPlan::Kind::sync_manager:
-      return fmt::format(
+      return formatted(
           "sync manager watchdog: the drive leaves OP by itself {} after the last outputs{}{}",
           servoctl::to_string(plan.time),
-          plan.alarms.empty() ? std::string() : fmt::format(" (alarm {})", fmt::join(plan.alarms, ", ")),
-          then);
+          plan.alarms.empty() ? std::string() : formatted(" (alarm {})", fmt::join(plan.alarms, ", ")), then);
     case WatchdogPlan::Kind::none: break;
   }
   auto none =
       plan.alarms.empty()
           ? std::string("none: nothing is known that stops the drive if the cable is cut or servoctl dies")
-          : fmt::format(
+          : formatted(
                 "none that servoctl can arm: the manual names alarm {} for lost communication, but not "
                 "whether and when the motor stops; if only servoctl dies it may keep turning",
                 fmt::join(plan.alarms, ", "));
@@ -257,10 +257,10 @@ std::string expectation(const WatchdogPlan& plan, bool armed) {
   unwatched.alarms = !plan.alarms.empty();
   switch (armed ? plan.stops() : unwatched.stops()) {
     case Stops::yes:
-      return fmt::format("its watchdog is set to stop it {} after the last message; that was not seen", time);
+      return formatted("its watchdog is set to stop it {} after the last message; that was not seen", time);
     case Stops::unknown:
       if (!armed) return "whether it stops by itself is not known";
-      return fmt::format(
+      return formatted(
           "its watchdog notices {} after the last message; whether the motor then stops is not known", time);
     case Stops::no: break;
   }

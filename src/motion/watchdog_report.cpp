@@ -1,8 +1,7 @@
 #include "motion/watchdog_report.hpp"
 
-#include <fmt/format.h>
-
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
@@ -28,7 +27,7 @@ void add_heartbeats(const Supervision& found, WatchdogReport& out) {
   for (const auto& entry : found.entries)
     if (entry.node != 0)
       out.noticed_by.push_back(
-          fmt::format("heartbeat of node {}, after {}", entry.node, servoctl::to_string(entry.time)));
+          formatted("heartbeat of node {}, after {}", entry.node, servoctl::to_string(entry.time)));
 }
 
 /// Life guarding that raises no alarm notices nothing.
@@ -40,9 +39,9 @@ void add_guarding(const Supervision& found, const drive::Rules& rules, WatchdogR
         "life guarding is set and has no effect: it sends heartbeats (1017h), and CiA 301 allows one of both");
   if (found.guarding_alarm && *found.guarding_alarm == 0)
     return out.remarks.push_back(
-        fmt::format("life guarding is set, and raises no alarm while {} is 0", rules.nmt.guarding_alarm));
-  out.noticed_by.push_back(fmt::format("life guarding, after {} without a request (from the first one on)",
-                                       servoctl::to_string(life)));
+        formatted("life guarding is set, and raises no alarm while {} is 0", rules.nmt.guarding_alarm));
+  out.noticed_by.push_back(formatted("life guarding, after {} without a request (from the first one on)",
+                                     servoctl::to_string(life)));
 }
 
 void add_reaction(const Supervision& found, const drive::Profile& profile, WatchdogReport& out) {
@@ -85,8 +84,8 @@ WatchdogReport report_of(const Supervision& found, const drive::Profile& profile
 /// Outputs that stay away end OP; what the drive does then is no part of the standard.
 void add_outputs(WatchdogReport& out) {
   out.noticed_by.push_back(
-      fmt::format("sync manager watchdog: in OP, when its outputs stay away (motions of servoctl: after {})",
-                  servoctl::to_string(kOutputsTime)));
+      formatted("sync manager watchdog: in OP, when its outputs stay away (motions of servoctl: after {})",
+                servoctl::to_string(kOutputsTime)));
   out.remarks.clear();
   out.fault.clear();
   out.assumed = true;

@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <cmath>
 #include <unordered_map>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "od/dcf.hpp"
 #include "od/eds.hpp"
@@ -18,7 +18,7 @@ namespace {
 std::string value_text(DataType type, const Value& value) {
   const auto bits = [&] {
     const auto bytes = encode(type, value).value_or(Bytes{});
-    return fmt::format("0x{:0{}X}", load_le(bytes), 2 * bytes.size());
+    return formatted("0x{:0{}X}", load_le(bytes), 2 * bytes.size());
   };
   if (type == DataType::time) return bits();
   if (is_real(type) && !std::isfinite(to_double(value))) return bits();
@@ -65,9 +65,9 @@ class Writer {
       line("ParameterValue", texts.front().second);
       return;
     }
-    begin(fmt::format("{:04X}Value", texts.front().first.index));
-    line("NrOfEntries", fmt::format("{}", texts.size()));
-    for (const auto& [object, text] : texts) line(fmt::format("{}", object.sub), text);
+    begin(formatted("{:04X}Value", texts.front().first.index));
+    line("NrOfEntries", formatted("{}", texts.size()));
+    for (const auto& [object, text] : texts) line(formatted("{}", object.sub), text);
   }
 
   void add_file_info(const IniSection& section) {
@@ -89,16 +89,16 @@ class Writer {
     if (commissioned_) return;
     commissioned_ = true;
     begin("DeviceComissioning");
-    line("NodeID", fmt::format("{}", settings_->node_id));
+    line("NodeID", formatted("{}", settings_->node_id));
     line("NodeName", settings_->node_name);
-    if (settings_->kbps) line("Baudrate", fmt::format("{}", *settings_->kbps));
+    if (settings_->kbps) line("Baudrate", formatted("{}", *settings_->kbps));
     line("NetNumber", "1");
     line("NetworkName", "");
     line("CANopenManager", "0");
   }
 
-  void begin(std::string_view section) { out_ += fmt::format("{}[{}]\n", out_.empty() ? "" : "\n", section); }
-  void line(std::string_view key, std::string_view value) { out_ += fmt::format("{}={}\n", key, value); }
+  void begin(std::string_view section) { out_ += formatted("{}[{}]\n", out_.empty() ? "" : "\n", section); }
+  void line(std::string_view key, std::string_view value) { out_ += formatted("{}={}\n", key, value); }
 
   IniText ini_;
   const DcfSettings* settings_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -47,7 +48,7 @@ std::string to_text(const std::vector<Mark>& marks) {
   for (const auto& mark : marks) {
     append(out, mark.field);
     if (!mark.lines.empty())
-      out += fmt::format(" ({} {})", mark.lines.size() == 1 ? "line" : "lines", fmt::join(mark.lines, ", "));
+      out += formatted(" ({} {})", mark.lines.size() == 1 ? "line" : "lines", fmt::join(mark.lines, ", "));
   }
   return out;
 }

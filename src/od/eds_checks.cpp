@@ -1,10 +1,10 @@
 #include "od/eds_checks.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/pdo_index.hpp"
 
 namespace servoctl::od {
@@ -41,7 +41,7 @@ class Mapping {
     const auto communication = static_cast<std::uint16_t>(object_->index - 0x200);
     if (bits > kMostBits && dictionary_->object(communication) != nullptr)
       tell(object_->entries.front(), "mapping-too-long",
-           fmt::format("{}: {:04X} maps {} bits; a PDO has {}", key, object_->index, bits, kMostBits),
+           formatted("{}: {:04X} maps {} bits; a PDO has {}", key, object_->index, bits, kMostBits),
            "map less, or lower sub 0");
   }
 
@@ -57,16 +57,16 @@ class Mapping {
                                           : std::nullopt;
     if (!type) {
       tell(entry, "mapping-absent",
-           fmt::format("{}: {} maps {}, which the file does not have", key, to_string(entry.address),
-                       to_string(target)),
+           formatted("{}: {} maps {}, which the file does not have", key, to_string(entry.address),
+                     to_string(target)),
            "map another object, or add its section");
       return;
     }
     const auto size = size_of(*type);
     if (!size || bits == 8 * *size || (*type == DataType::boolean && bits == 1)) return;
     tell(entry, "mapping-length",
-         fmt::format("{}: {} maps {} bits of {}, which is {} ({} bits)", key, to_string(entry.address), bits,
-                     to_string(target), name(*type), *type == DataType::boolean ? 1 : 8 * *size),
+         formatted("{}: {} maps {} bits of {}, which is {} ({} bits)", key, to_string(entry.address), bits,
+                   to_string(target), name(*type), *type == DataType::boolean ? 1 : 8 * *size),
          "write the length of the object in bits in the last two digits");
   }
 
@@ -91,7 +91,7 @@ void check_mandatory_objects(const PresentObjects& present, Findings& findings) 
   for (const auto& row : {Row{0x1000, "device type"}, Row{0x1001, "error register"}, Row{0x1018, "identity"}})
     if (!present.has(row.index))
       findings.add(Severity::warning, 1, 1, "missing-mandatory-object",
-                   fmt::format("{:04X} ({}) is missing: it is mandatory", row.index, row.name),
+                   formatted("{:04X} ({}) is missing: it is mandatory", row.index, row.name),
                    "add its sections");
 }
 

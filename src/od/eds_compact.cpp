@@ -1,10 +1,10 @@
 #include "od/eds_compact.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "od/eds_entry.hpp"
@@ -46,8 +46,8 @@ std::array<const IniKey*, 256> by_sub(const IniSection* list, std::uint64_t coun
       out[*sub] = &key;
     else if (!findings.enough_of("no-such-entry"))
       findings.warn(key, "no-such-entry",
-                    fmt::format("[{}]: CompactSubObj has no entry '{}'", list->name, shown(key.key)),
-                    fmt::format("use decimal numbers of 1 to {}", count));
+                    formatted("[{}]: CompactSubObj has no entry '{}'", list->name, shown(key.key)),
+                    formatted("use decimal numbers of 1 to {}", count));
   }
   return out;
 }
@@ -75,7 +75,7 @@ Object communication_object(const PdoKind& kind, std::uint16_t number, std::uint
       Sub{"Inhibit time", DataType::u16}, Sub{"Compatibility entry", DataType::u8},
       Sub{"Event timer", DataType::u16},  Sub{"SYNC start value", DataType::u8}};
   const auto index = static_cast<std::uint16_t>(kind.communication + number);
-  Object object{index, fmt::format("{} communication parameter", kind.word), ObjectCode::record, {}};
+  Object object{index, formatted("{} communication parameter", kind.word), ObjectCode::record, {}};
   object.entries.push_back(count_entry(index, 0, Access::constant));
   for (std::uint8_t bit = 0; bit < kSubs.size(); ++bit) {
     if ((mask >> bit & 1U) == 0) continue;
@@ -93,11 +93,11 @@ Object communication_object(const PdoKind& kind, std::uint16_t number, std::uint
 
 Object mapping_object(const PdoKind& kind, std::uint16_t number, std::uint64_t entries) {
   const auto index = static_cast<std::uint16_t>(kind.mapping + number);
-  Object object{index, fmt::format("{} mapping parameter", kind.word), ObjectCode::record, {}};
+  Object object{index, formatted("{} mapping parameter", kind.word), ObjectCode::record, {}};
   object.entries.push_back(count_entry(index, 0, Access::rw));
   for (std::uint64_t sub = 1; sub <= entries; ++sub)
     object.entries.push_back(entry_of({index, static_cast<std::uint8_t>(sub)},
-                                      fmt::format("Mapping entry {}", sub), DataType::u32, Access::rw,
+                                      formatted("Mapping entry {}", sub), DataType::u32, Access::rw,
                                       Value(std::uint64_t{0})));
   return object;
 }
@@ -113,8 +113,8 @@ std::uint64_t compact_count(const IniKey& key, Findings& findings) {
   constexpr std::uint64_t kMost = 254;
   const auto count = eds_number(key, kMost + 1, findings).value_or(0);
   if (count > kMost)
-    findings.warn(key, "compact-too-many", fmt::format("CompactSubObj is {}; taken as {}", count, kMost),
-                  fmt::format("write CompactSubObj={}: sub FF is no entry", kMost));
+    findings.warn(key, "compact-too-many", formatted("CompactSubObj is {}; taken as {}", count, kMost),
+                  formatted("write CompactSubObj={}: sub FF is no entry", kMost));
   return std::min(count, kMost);
 }
 
@@ -150,7 +150,7 @@ void add_compact_subs(const IniSection& section, const CompactLists& lists, cons
     entry.address.sub = static_cast<std::uint8_t>(sub);
     const auto* name = names[sub];
     entry.name = name != nullptr && !name->value.empty() ? std::string(name->value)
-                                                         : fmt::format("{}{}", object.name, sub);
+                                                         : formatted("{}{}", object.name, sub);
     if (auto value = eds_value(values[sub], entry.type, findings, ValueUse::written))
       entry.configured = std::move(value);
     if (denotations[sub] != nullptr && !denotations[sub]->value.empty())

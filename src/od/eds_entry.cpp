@@ -1,11 +1,11 @@
 #include "od/eds_entry.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/pdo_index.hpp"
 #include "base/text.hpp"
@@ -63,8 +63,8 @@ std::optional<std::uint64_t> number_or_name(const IniKey& key, const std::array<
   for (const auto& row : names) {
     if (!equals_nocase(row.name, key.value)) continue;
     findings.warn(key, "name-for-number",
-                  fmt::format("{}: '{}' is taken as 0x{:04X}", key.key, key.value, row.code),
-                  fmt::format("write 0x{:04X}", row.code));
+                  formatted("{}: '{}' is taken as 0x{:04X}", key.key, key.value, row.code),
+                  formatted("write 0x{:04X}", row.code));
     return row.code;
   }
   return eds_number(key, max, findings);
@@ -78,7 +78,7 @@ std::optional<LimitType> entry_type(const IniSection& section, const LimitTypes&
     if (code != nullptr && (parse_integer(code->value) == Integer{false, 2}))
       return LimitType{DataType::domain, {}, {}, {}};
     findings.add(Severity::error, section.line, 1, "missing-data-type",
-                 fmt::format("[{}] has no DataType", section.name),
+                 formatted("[{}] has no DataType", section.name),
                  "add DataType, for example DataType=0x0007 for an unsigned number of 32 bits");
     return std::nullopt;
   }
@@ -88,7 +88,7 @@ std::optional<LimitType> entry_type(const IniSection& section, const LimitTypes&
     return found->second;
   const auto type = data_type_from_cia(*code);
   if (!type) {
-    findings.error(*key, "unknown-data-type", fmt::format("0x{:04X} is not a CiA 301 data type", *code),
+    findings.error(*key, "unknown-data-type", formatted("0x{:04X} is not a CiA 301 data type", *code),
                    "use one of 0x0001 to 0x001B (CiA 301, table 44)");
     return std::nullopt;
   }
@@ -96,7 +96,7 @@ std::optional<LimitType> entry_type(const IniSection& section, const LimitTypes&
       *type,
       {},
       {},
-      is_complex_type(*code) ? fmt::format("{} ({:04X}h)", cia_name(*code), *code) : std::string()};
+      is_complex_type(*code) ? formatted("{} ({:04X}h)", cia_name(*code), *code) : std::string()};
 }
 
 /// The row of the word; of a near one when only one is near (`r` → `ro`, `r/w` → `rw`); the ro row when it
@@ -107,8 +107,8 @@ const AccessRow& access_of(const IniKey& key, Findings& findings) {
     if (equals_nocase(row.word, text)) return row;
   for (const auto& synonym : kAccessSynonyms) {
     if (!equals_nocase(synonym.written, text)) continue;
-    findings.warn(key, "access-spelling", fmt::format("'{}' is taken as {}", text, synonym.meant),
-                  fmt::format("write {}", synonym.meant));
+    findings.warn(key, "access-spelling", formatted("'{}' is taken as {}", text, synonym.meant),
+                  formatted("write {}", synonym.meant));
     return *std::find_if(kAccess.begin(), kAccess.end(),
                          [&](const AccessRow& row) { return row.word == synonym.meant; });
   }
@@ -116,7 +116,7 @@ const AccessRow& access_of(const IniKey& key, Findings& findings) {
   for (const auto& row : kAccess) words.emplace_back(row.word);
   const auto guess = text.size() > 8 ? std::string() : did_you_mean(text, words);
   findings.error(key, "unknown-access-type",
-                 fmt::format("'{}' is not an access type; taken as ro", shown(text)),
+                 formatted("'{}' is not an access type; taken as ro", shown(text)),
                  guess.empty() ? "write ro, rw, wo, const, rwr or rww" : guess);
   return kAccess[0];
 }
@@ -125,7 +125,7 @@ void read_access(const IniSection& section, Entry& entry, Findings& findings) {
   const auto* key = section.find("AccessType");
   if (key == nullptr || key->value.empty())
     findings.add(Severity::error, section.line, 1, "missing-access-type",
-                 fmt::format("[{}] has no AccessType; taken as ro", section.name),
+                 formatted("[{}] has no AccessType; taken as ro", section.name),
                  "add AccessType=ro, rw, wo or const");
   const auto& row = key == nullptr || key->value.empty() ? kAccess[0] : access_of(*key, findings);
   entry.access = row.access;
@@ -154,7 +154,7 @@ void check_can_id(const IniSection& section, const Entry& entry, Findings& findi
     if (number == nullptr || (*number & kExtended) != 0 || (*number & kCanId) + 1 <= kHighest) continue;
     const auto* key = section.find(name);
     findings.warn(*key, "node-id-sum",
-                  fmt::format("{}: {} is above 7FFh for every node; taken as it is", name, shown(key->value)),
+                  formatted("{}: {} is above 7FFh for every node; taken as it is", name, shown(key->value)),
                   "lower the number, or set bit 29 for a CAN-ID of 29 bits");
   }
 }
@@ -164,34 +164,33 @@ void check_can_id(const IniSection& section, const Entry& entry, Findings& findi
 std::string shown_limit(const IniSection& section, std::string_view name, const NodeValue& value) {
   const auto* key = section.find(name);
   const auto number = to_string(value.value);
-  if (key == nullptr || key->value.empty()) return fmt::format("{} {}", name, number);
-  if (value.plus_node_id || key->value == number) return fmt::format("{} {}", name, shown(key->value));
-  return fmt::format("{} {} ({})", name, shown(key->value), number);
+  if (key == nullptr || key->value.empty()) return formatted("{} {}", name, number);
+  if (value.plus_node_id || key->value == number) return formatted("{} {}", name, shown(key->value));
+  return formatted("{} {} ({})", name, shown(key->value), number);
 }
 
 void check_order(const IniSection& section, Entry& entry, Findings& findings) {
   const auto tell = [&](std::string_view rule, const std::string& message) {
     findings.add(Severity::warning, section.line, 1, std::string(rule),
-                 fmt::format("[{}]: {}", section.name, message),
-                 "correct LowLimit, HighLimit or DefaultValue");
+                 formatted("[{}]: {}", section.name, message), "correct LowLimit, HighLimit or DefaultValue");
   };
   const auto above = [](const std::optional<NodeValue>& a, const std::optional<NodeValue>& b) {
     return a && b && compare_numbers(a->for_node(1), b->for_node(1)) > 0;
   };
   if (above(entry.low, entry.high)) {
     tell("limits-crossed",
-         fmt::format("{} is above {} in {}; neither is used", shown_limit(section, "LowLimit", *entry.low),
-                     shown_limit(section, "HighLimit", *entry.high), name(entry.type)));
+         formatted("{} is above {} in {}; neither is used", shown_limit(section, "LowLimit", *entry.low),
+                   shown_limit(section, "HighLimit", *entry.high), name(entry.type)));
     entry.low.reset();
     entry.high.reset();
   }
   const bool below = above(entry.low, entry.default_value);
   if (below || above(entry.default_value, entry.high))
     tell("default-out-of-limits",
-         fmt::format("{} is {} {}", shown_limit(section, "DefaultValue", *entry.default_value),
-                     below ? "below" : "above",
-                     below ? shown_limit(section, "LowLimit", *entry.low)
-                           : shown_limit(section, "HighLimit", *entry.high)));
+         formatted("{} is {} {}", shown_limit(section, "DefaultValue", *entry.default_value),
+                   below ? "below" : "above",
+                   below ? shown_limit(section, "LowLimit", *entry.low)
+                         : shown_limit(section, "HighLimit", *entry.high)));
 }
 
 }  // namespace
@@ -205,7 +204,7 @@ ObjectCode eds_object_code(const IniSection& section, Findings& findings) {
                                  [&](const NamedCode& row) { return row.code == *code; });
   if (known) return static_cast<ObjectCode>(*code);
   findings.error(*key, "unknown-object-type",
-                 fmt::format("'{}' is not an object type; taken as VAR", shown(key->value)),
+                 formatted("'{}' is not an object type; taken as VAR", shown(key->value)),
                  "write 0x7 for a variable, 0x8 for an array, 0x9 for a record");
   return ObjectCode::var;
 }
@@ -223,7 +222,7 @@ std::optional<Entry> eds_entry(const IniSection& section, ObjectAddress address,
   const auto* name = section.find("ParameterName");
   if (name == nullptr || name->value.empty())
     findings.add(Severity::warning, section.line, 1, "missing-name",
-                 fmt::format("[{}] has no ParameterName", section.name), "add ParameterName");
+                 formatted("[{}] has no ParameterName", section.name), "add ParameterName");
   else
     entry.name = std::string(name->value);
   read_access(section, entry, findings);

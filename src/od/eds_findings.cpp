@@ -1,9 +1,9 @@
 #include "od/eds_findings.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "od/eds_value.hpp"
 
 namespace servoctl::od {
@@ -59,7 +59,7 @@ std::vector<Diagnostic> Findings::take() {
     if (rule.count <= kMostOfARule) continue;
     const auto more = rule.count - kMostOfARule;
     all_.push_back({rule.severity, last_line, 1, entry.first,
-                    fmt::format("{} more of this rule {} left out", more, more == 1 ? "is" : "are"),
+                    formatted("{} more of this rule {} left out", more, more == 1 ? "is" : "are"),
                     "correct those that are shown, then check again", more});
   }
   return std::move(all_);

@@ -1,10 +1,10 @@
 #include "od/eds_keys.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <span>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "od/eds_section.hpp"
 #include "od/eds_value.hpp"
@@ -67,11 +67,11 @@ bool has_strange_key(const IniSection& section) {
 void tell(const IniSection& section, const IniKey& key, std::string_view meant, bool both,
           Findings& findings) {
   if (findings.enough_of("misspelt-key")) return;
-  const auto what = fmt::format("[{}] {}", shown(section.name), shown(key.key));
+  const auto what = formatted("[{}] {}", shown(section.name), shown(key.key));
   findings.warn(key, "misspelt-key",
-                both ? fmt::format("{} is ignored: {} is also present", what, meant)
-                     : fmt::format("{} is taken as {}", what, meant),
-                both ? std::string("remove one of them") : fmt::format("write {}", meant));
+                both ? formatted("{} is ignored: {} is also present", what, meant)
+                     : formatted("{} is taken as {}", what, meant),
+                both ? std::string("remove one of them") : formatted("write {}", meant));
 }
 
 void mend(IniText& ini, Findings* findings) {

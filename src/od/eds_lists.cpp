@@ -1,6 +1,5 @@
 #include "od/eds_lists.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -8,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "od/eds_value.hpp"
@@ -43,7 +43,7 @@ class Checker {
     for (const auto& object : present_->sections)
       if (object.second != nullptr && listed_[object.first] == nullptr)
         findings_->add(Severity::warning, object.second->line, 1, "not-listed",
-                       fmt::format("[{}] is in no object list", object.second->name),
+                       formatted("[{}] is in no object list", object.second->name),
                        "add it to MandatoryObjects, OptionalObjects or ManufacturerObjects");
   }
 
@@ -64,14 +64,14 @@ class Checker {
     const auto* before = std::exchange(listed_[index], &key);
     if (before != nullptr && present_->has(index) && !findings_->enough_of("listed-twice"))
       findings_->warn(key, "listed-twice",
-                      fmt::format("0x{:04X} is listed again, first in line {}", index, before->line),
+                      formatted("0x{:04X} is listed again, first in line {}", index, before->line),
                       "remove one of them");
     const auto right = right_list(index);
     const bool wrong = right.empty() ? list == kLists[2] && index >= 0x1000 : list != right;
     if (wrong && !findings_->enough_of("wrong-list"))
       findings_->warn(
           key, "wrong-list",
-          fmt::format("0x{:04X} is in {} but belongs in {}", index, list, right.empty() ? kLists[1] : right),
+          formatted("0x{:04X} is in {} but belongs in {}", index, list, right.empty() ? kLists[1] : right),
           "move it to the right list");
   }
 
@@ -82,10 +82,10 @@ class Checker {
     const auto hex = parse_digits(key.value, 16);
     const bool meant_hex = hex && *hex <= 0xFFFF && present_->has(*hex);
     if (meant_hex)
-      findings_->warn(key, "decimal-index", fmt::format("{} is taken as 0x{:04X}", key.value, *hex),
-                      fmt::format("write 0x{:04X}: without 0x a number is decimal", *hex));
+      findings_->warn(key, "decimal-index", formatted("{} is taken as 0x{:04X}", key.value, *hex),
+                      formatted("write 0x{:04X}: without 0x a number is decimal", *hex));
     else if (!findings_->enough_of("listed-but-absent"))
-      findings_->error(key, "listed-but-absent", fmt::format("0x{:04X} is listed and has no section", *index),
+      findings_->error(key, "listed-but-absent", formatted("0x{:04X} is listed and has no section", *index),
                        "add the section, or take it off the list");
     return meant_hex ? hex : index;
   }
@@ -95,8 +95,8 @@ class Checker {
     const auto number = eds_number(*count, 0xFFFF, *findings_);
     if (number && *number != keys - 1)
       findings_->warn(*count, "wrong-object-count",
-                      fmt::format("SupportedObjects is {}, but {} follow", *number, keys - 1),
-                      fmt::format("write SupportedObjects={}", keys - 1));
+                      formatted("SupportedObjects is {}, but {} follow", *number, keys - 1),
+                      formatted("write SupportedObjects={}", keys - 1));
   }
 
   const PresentObjects* present_;

@@ -1,12 +1,12 @@
 #include "od/eds_object.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
 #include <unordered_set>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/pdo_index.hpp"
 #include "base/text.hpp"
@@ -18,7 +18,7 @@ namespace {
 
 void tell_duplicate_key(const IniKey& key, Findings& findings) {
   if (!findings.enough_of("duplicate-key"))
-    findings.warn(key, "duplicate-key", fmt::format("{} appears again; the last one is used", shown(key.key)),
+    findings.warn(key, "duplicate-key", formatted("{} appears again; the last one is used", shown(key.key)),
                   "remove one of them");
 }
 
@@ -74,15 +74,15 @@ void tell_digits(const IniSection& section, std::uint16_t index, const Digits& d
   if (digits.why.empty()) return;
   findings.add(Severity::warning, section.line, 1,
                digits.decimal ? "decimal-sub-index" : "hexadecimal-sub-index",
-               fmt::format("the sub-indexes of {:04X} are taken as {}: {}", index,
-                           digits.decimal ? "decimal" : "hexadecimal, sub10 is sixteen", digits.why),
+               formatted("the sub-indexes of {:04X} are taken as {}: {}", index,
+                         digits.decimal ? "decimal" : "hexadecimal, sub10 is sixteen", digits.why),
                "write sub-indexes in hexadecimal: ten is subA");
 }
 
 void tell_too_high(const IniSection& section, Findings& findings) {
   if (!findings.enough_of("unknown-section"))
     findings.add(Severity::warning, section.line, 1, "unknown-section",
-                 fmt::format("[{}]: the sub-index is above FF", section.name),
+                 formatted("[{}]: the sub-index is above FF", section.name),
                  "write sub-indexes in hexadecimal: ten is subA");
 }
 
@@ -91,20 +91,20 @@ void check_sub_number(const IniSection& section, const ObjectSections& sections,
   const auto count = sections.subs.size();
   if (count == 0) {
     findings.add(Severity::warning, section.line, 1, "no-sub-indexes",
-                 fmt::format("[{}] has neither sub-indexes nor CompactSubObj; it is ignored", section.name),
+                 formatted("[{}] has neither sub-indexes nor CompactSubObj; it is ignored", section.name),
                  "add the sections of its sub-indexes, or write ObjectType=0x7 when it is one value");
     return;
   }
   if (key == nullptr || key->value.empty()) {
     findings.add(Severity::warning, section.line, 1, "missing-sub-number",
-                 fmt::format("[{}] has no SubNumber", section.name), fmt::format("add SubNumber={}", count));
+                 formatted("[{}] has no SubNumber", section.name), formatted("add SubNumber={}", count));
     return;
   }
   const auto number = eds_number(*key, 256, findings);
   if (number && *number != count)
     findings.warn(*key, "wrong-sub-number",
-                  fmt::format("SubNumber is {}, but [{}] has {} sub-indexes", *number, section.name, count),
-                  fmt::format("write SubNumber={}", count));
+                  formatted("SubNumber is {}, but [{}] has {} sub-indexes", *number, section.name, count),
+                  formatted("write SubNumber={}", count));
 }
 
 /// Whether sub 0 may say more than there is: multiplexed PDOs are marked so, the communication record of a
@@ -119,7 +119,7 @@ void check_sub_0(const Object& object, const IniSection& main, const ObjectSecti
   constexpr std::uint8_t kStructure = 0xFF;  // Is no entry (CiA 301, 7.4.5.2).
   if (sections.subs.front().first != 0) {
     findings.add(Severity::warning, main.line, 1, "missing-sub-0",
-                 fmt::format("[{}] has no sub 0 (highest sub-index supported)", main.name),
+                 formatted("[{}] has no sub 0 (highest sub-index supported)", main.name),
                  "add the section of sub 0: a u8");
     return;
   }
@@ -134,7 +134,7 @@ void check_sub_0(const Object& object, const IniSection& main, const ObjectSecti
   };
   if (entry.type != DataType::u8)
     tell("DataType", "sub-0-type",
-         fmt::format("[{}] is {}; sub 0 is u8 by CiA 301; taken as written", section.name, name(entry.type)),
+         formatted("[{}] is {}; sub 0 is u8 by CiA 301; taken as written", section.name, name(entry.type)),
          "write DataType=0x0005");
   auto highest = sections.subs.back().first;
   if (highest == kStructure && sections.subs.size() > 1)
@@ -145,9 +145,9 @@ void check_sub_0(const Object& object, const IniSection& main, const ObjectSecti
   const bool fixed = !writable(entry.access) && object.index != 0x1003 && !is_pdo_mapping(object.index);
   if ((said > highest && !may_say_more(object.index, said)) || (fixed && said < highest))
     tell("DefaultValue", "sub-0-value",
-         fmt::format("[{}] says the highest sub-index is {}; it is {}", section.name,
-                     to_string(entry.default_value->value), highest),
-         fmt::format("write DefaultValue={}", highest));
+         formatted("[{}] says the highest sub-index is {}; it is {}", section.name,
+                   to_string(entry.default_value->value), highest),
+         formatted("write DefaultValue={}", highest));
 }
 
 void add_entry(const IniSection& section, ObjectAddress address, const LimitTypes& types, Object& object,
@@ -169,8 +169,8 @@ void tell_var_with_subs(const IniSection& main, Findings& findings) {
   const bool said = key != nullptr && !key->value.empty();
   findings.add(Severity::warning, said ? key->line : main.line, said ? key->value_column : 1,
                "var-with-sub-indexes",
-               fmt::format("[{}] {} and has sub-indexes; these are taken, the object is read as a record",
-                           main.name, said ? "is a VAR" : "has no ObjectType, which means VAR,"),
+               formatted("[{}] {} and has sub-indexes; these are taken, the object is read as a record",
+                         main.name, said ? "is a VAR" : "has no ObjectType, which means VAR,"),
                "write ObjectType=0x9, or 0x8 for an array, or remove the sub-indexes");
 }
 
@@ -196,8 +196,8 @@ void check_duplicate_keys(const IniSection& section, Findings& findings) {
 void tell_duplicate(const IniSection& again, const IniSection& first, Findings& findings) {
   if (!findings.enough_of("duplicate-section"))
     findings.add(Severity::error, again.line, 1, "duplicate-section",
-                 fmt::format("[{}] appears again, first in line {}; the first one is used", shown(again.name),
-                             first.line),
+                 formatted("[{}] appears again, first in line {}; the first one is used", shown(again.name),
+                           first.line),
                  "remove one of them");
 }
 
@@ -238,7 +238,7 @@ Object eds_object(std::uint16_t index, const ObjectSections& sections, const Com
   } else if (!sections.subs.empty()) {
     const auto& first = *sections.subs.front().second;
     findings.add(Severity::error, first.line, 1, "missing-object",
-                 fmt::format("[{}] has no section [{:04X}]", first.name, index),
+                 formatted("[{}] has no section [{:04X}]", first.name, index),
                  "add the section of the object");
   }
   const bool compact = sections.main != nullptr && has_compact_subs(*sections.main);

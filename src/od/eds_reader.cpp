@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "od/eds_checks.hpp"
@@ -71,16 +71,16 @@ class EdsReader {
       const auto text = stray.text;
       if (is_mark(text) || (merged && text.starts_with("======="))) {
         findings_.add(Severity::error, stray.line, 1, "merge-marker",
-                      fmt::format("'{}' is left from a merge", shown(text)), "finish the merge");
+                      formatted("'{}' is left from a merge", shown(text)), "finish the merge");
       } else if (is_heading(text)) {
         continue;
       } else if (text.starts_with("#") || text.starts_with("//")) {
         findings_.add(Severity::warning, stray.line, 1, "foreign-comment",
-                      fmt::format("'{}' is not a comment in this format; skipped", shown(text)),
+                      formatted("'{}' is not a comment in this format; skipped", shown(text)),
                       "begin it with ;");
       } else if (!findings_.enough_of("stray-line")) {
         findings_.add(Severity::error, stray.line, 1, "stray-line",
-                      fmt::format("'{}' is neither a section nor a key", shown(text)),
+                      formatted("'{}' is neither a section nor a key", shown(text)),
                       "remove the line, or begin it with ; when it is a comment");
       }
     }
@@ -90,7 +90,7 @@ class EdsReader {
     check_duplicate_keys(section, findings_);
     if (!section.closed && !findings_.enough_of("unclosed-section"))
       findings_.add(Severity::warning, section.line, 1, "unclosed-section",
-                    fmt::format("[{} has no ]", shown(section.name)), "close the name with ]");
+                    formatted("[{} has no ]", shown(section.name)), "close the name with ]");
     auto name = parse_section_name(section.name);
     if (!name) name = respelt(section);
     if (!name) return;
@@ -116,11 +116,11 @@ class EdsReader {
     const auto meant = respelt_section_name(section.name);
     if (meant)
       findings_.add(Severity::warning, section.line, 1, "misspelt-section",
-                    fmt::format("[{}] is taken as [{}]", shown(section.name), *meant),
-                    fmt::format("write [{}]", *meant));
+                    formatted("[{}] is taken as [{}]", shown(section.name), *meant),
+                    formatted("write [{}]", *meant));
     else if (describes_object(section))
       findings_.add(Severity::warning, section.line, 1, "unknown-section",
-                    fmt::format("[{}] is not a CiA 306 section; its object is ignored", shown(section.name)),
+                    formatted("[{}] is not a CiA 306 section; its object is ignored", shown(section.name)),
                     "name it after the index: [2000] or [2000sub1]");
     return meant ? parse_section_name(*meant) : std::nullopt;
   }
@@ -154,12 +154,12 @@ class EdsReader {
     device.product_number = number("ProductNumber");
     device.revision_number = number("RevisionNumber");
     for (const std::uint32_t rate : {10U, 20U, 50U, 100U, 125U, 250U, 500U, 800U, 1000U})
-      if (number(fmt::format("BaudRate_{}", rate)) == 1) device.bitrates.push_back(rate);
+      if (number(formatted("BaudRate_{}", rate)) == 1) device.bitrates.push_back(rate);
   }
 
   void read_dummies(const IniSection& section) {
     for (std::uint64_t code = 1; code <= 7; ++code) {
-      const auto* key = section.find(fmt::format("Dummy{:04X}", code));
+      const auto* key = section.find(formatted("Dummy{:04X}", code));
       if (key == nullptr || key->value.empty() || eds_number(*key, 1, findings_).value_or(0) == 0) continue;
       out_.device.dummies.push_back(data_type_from_cia(code).value_or(DataType::boolean));
     }
@@ -173,7 +173,7 @@ class EdsReader {
     if (id <= 127)
       out_.node_id = static_cast<std::uint8_t>(id);
     else if (id != kUnconfigured)
-      findings_.error(*key, "bad-number", fmt::format("NodeID: {} is not a node-ID", id), "write 1 to 127");
+      findings_.error(*key, "bad-number", formatted("NodeID: {} is not a node-ID", id), "write 1 to 127");
   }
 
   void read_objects() {
@@ -225,19 +225,19 @@ Findings findings_of(const DecodedText& decoded) {
   };
   if (decoded.encoding != TextEncoding::utf8 || decoded.odd_bytes > 0)
     at("encoding",
-       fmt::format("the file is taken as {}{}", title(decoded.encoding),
-                   decoded.odd_bytes == 0
-                       ? std::string()
-                       : fmt::format("; {} bytes mean nothing in it and are written out, as \\xFF",
-                                     decoded.odd_bytes)),
+       formatted(
+           "the file is taken as {}{}", title(decoded.encoding),
+           decoded.odd_bytes == 0
+               ? std::string()
+               : formatted("; {} bytes mean nothing in it and are written out, as \\xFF", decoded.odd_bytes)),
        "save it as UTF-8");
   if (decoded.skipped_nuls > 0)
-    at("nul-byte", fmt::format("{} NUL bytes are skipped", decoded.skipped_nuls), "remove them");
+    at("nul-byte", formatted("{} NUL bytes are skipped", decoded.skipped_nuls), "remove them");
   return findings;
 }
 
 tl::unexpected<Error> refuse(std::string_view file, std::string_view why, std::string hint) {
-  return fail(Errc::file, fmt::format("{}: {}", file, why), std::move(hint));
+  return fail(Errc::file, formatted("{}: {}", file, why), std::move(hint));
 }
 
 std::size_t count_of(const std::vector<Diagnostic>& diagnostics, Severity severity) {
@@ -254,8 +254,7 @@ std::size_t EdsFile::warning_count() const { return count_of(diagnostics, Severi
 Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
   constexpr std::string_view kHint = "is it an EDS or DCF file (CiA 306)?";
   if (text.size() > kMostEdsBytes)
-    return refuse(file, fmt::format("{} MiB is too large for an EDS", text.size() >> 20U),
-                  std::string(kHint));
+    return refuse(file, formatted("{} MiB is too large for an EDS", text.size() >> 20U), std::string(kHint));
   if (is_binary(text)) return refuse(file, "not a text file", std::string(kHint));
   const auto decoded = to_utf8(text);
   auto out = EdsReader(decoded.text(text), findings_of(decoded)).read();
@@ -275,9 +274,9 @@ Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
 }
 
 std::string to_string(const Diagnostic& diagnostic, std::string_view file) {
-  return fmt::format("{}:{}:{}: {}: {} [{}]", file, diagnostic.line, diagnostic.column,
-                     diagnostic.severity == Severity::error ? "error" : "warning", diagnostic.message,
-                     diagnostic.rule);
+  return formatted("{}:{}:{}: {}: {} [{}]", file, diagnostic.line, diagnostic.column,
+                   diagnostic.severity == Severity::error ? "error" : "warning", diagnostic.message,
+                   diagnostic.rule);
 }
 
 }  // namespace servoctl::od

@@ -1,8 +1,8 @@
 #include "od/eds_types.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "od/complex_type.hpp"
 #include "od/eds_value.hpp"
@@ -31,7 +31,7 @@ std::optional<LimitType> limit_type(std::span<const ObjectSection> sections) {
   if (!type) return std::nullopt;
   LimitType out{*type, {}, {}, {}};
   const auto index = sections.front().name.index;
-  out.note = fmt::format("type {:04X}h of the data sheet: {}", index, name(*type));
+  out.note = formatted("type {:04X}h of the data sheet: {}", index, name(*type));
   if (!is_integer(*type) && !is_real(*type)) return out;
   Findings ignored;  // The section of the type tells them.
   const auto limit = [&](std::uint16_t sub) {
@@ -41,7 +41,7 @@ std::optional<LimitType> limit_type(std::span<const ObjectSection> sections) {
   out.low = limit(kLowSub);
   out.high = limit(kHighSub);
   if (out.low && out.high && compare_numbers(*out.low, *out.high) > 0) out.low = out.high = std::nullopt;
-  if (out.low && out.high) out.note += fmt::format(", {}..{}", to_string(*out.low), to_string(*out.high));
+  if (out.low && out.high) out.note += formatted(", {}..{}", to_string(*out.low), to_string(*out.high));
   return out;
 }
 

@@ -1,9 +1,9 @@
 #include "od/eds_value.hpp"
 
-#include <fmt/format.h>
 #include <limits>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
@@ -30,19 +30,19 @@ bool take_leading_zero(const IniKey& key, std::string_view number, ValueUse use,
   if (use == ValueUse::written && octal && octal != decimal) {
     findings.error(
         key, "octal-value",
-        fmt::format(
+        formatted(
             "{}: '{}' is {} by the standard (a leading zero means octal), and {} to most who write it; not "
             "taken",
             shown(key.key), shown(number), *octal, decimal.value_or(0)),
-        fmt::format("write 0x{:X} or {}", *octal, decimal.value_or(0)));
+        formatted("write 0x{:X} or {}", *octal, decimal.value_or(0)));
     return false;
   }
   const auto by_standard = !octal             ? std::string("no number")
                            : octal == decimal ? std::string("the same")
-                                              : fmt::format("{}", *octal);
+                                              : formatted("{}", *octal);
   findings.warn(key, "leading-zero",
-                fmt::format("'{}' is taken as decimal, {}; by the standard a leading zero means octal: {}",
-                            shown(number), decimal.value_or(0), by_standard),
+                formatted("'{}' is taken as decimal, {}; by the standard a leading zero means octal: {}",
+                          shown(number), decimal.value_or(0), by_standard),
                 "write it without leading zeros, or with 0x");
   return true;
 }
@@ -77,8 +77,8 @@ std::optional<Value> wider_complement(const IniKey& key, DataType type, std::str
     const auto number = to_string(*value);
     findings.warn(
         key, "wide-value",
-        fmt::format("{}: {} has more digits than {}; taken as {}", key.key, shown(text), name(type), number),
-        fmt::format("write {}", number));
+        formatted("{}: {} has more digits than {}; taken as {}", key.key, shown(text), name(type), number),
+        formatted("write {}", number));
     return std::move(*value);
   }
   return std::nullopt;
@@ -123,11 +123,11 @@ void tell_no_value(const IniKey& key, DataType type, std::string_view text, cons
   const auto why = clip(error.message, 200);
   const bool is_number = parse_integer(text).has_value();
   if (use == ValueUse::limit && (is_number || !is_integer(type)))
-    findings.warn(key, "limit-outside-type", fmt::format("{}: {}; no limit is taken", key.key, why),
-                  fmt::format("write a limit that {} can have, or leave it empty", name(type)));
+    findings.warn(key, "limit-outside-type", formatted("{}: {}; no limit is taken", key.key, why),
+                  formatted("write a limit that {} can have, or leave it empty", name(type)));
   else
-    findings.error(key, "bad-value", fmt::format("{}: {}", key.key, why),
-                   fmt::format("write a value of {}, or leave it empty", name(type)));
+    findings.error(key, "bad-value", formatted("{}: {}", key.key, why),
+                   formatted("write a value of {}, or leave it empty", name(type)));
 }
 
 }  // namespace
@@ -139,7 +139,7 @@ std::string_view without_comment(const IniKey& key, Findings& findings) {
   if (at == std::string_view::npos) return key.value;
   findings.warn(
       key, "trailing-comment",
-      fmt::format("{}: a comment begins at the start of a line; the rest of this one is skipped", key.key),
+      formatted("{}: a comment begins at the start of a line; the rest of this one is skipped", key.key),
       "move the comment to a line of its own");
   return trim(key.value.substr(0, at));
 }
@@ -149,7 +149,7 @@ std::optional<std::uint64_t> eds_number(const IniKey& key, std::uint64_t max, Fi
   const auto number = parse_integer(text);
   if (!number || number->negative || number->magnitude > max) {
     findings.error(key, "bad-number",
-                   fmt::format("{}: '{}' is not a number from 0 to {}", shown(key.key), shown(text), max),
+                   formatted("{}: '{}' is not a number from 0 to {}", shown(key.key), shown(text), max),
                    "write a number such as 7 or 0x7");
     return std::nullopt;
   }
@@ -164,7 +164,7 @@ std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& f
   const auto [text, plus_node_id] = numeric ? without_node_id(written) : std::pair(written, false);
   if (text.empty()) return std::nullopt;
   if (plus_node_id && !is_integer(type)) {
-    findings.error(*key, "bad-value", fmt::format("{}: $NODEID in a value of {}", key->key, name(type)),
+    findings.error(*key, "bad-value", formatted("{}: $NODEID in a value of {}", key->key, name(type)),
                    "only integers can contain the node-ID");
     return std::nullopt;
   }
@@ -176,11 +176,10 @@ std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& f
   if (is_integer(type) && !take_leading_zero(*key, text, use, findings)) return std::nullopt;
   NodeValue out{std::move(*value), plus_node_id};
   if (!plus_node_id || fits_a_node(type, out)) return out;
-  findings.add(
-      use == ValueUse::written ? Severity::error : Severity::warning, key->line, key->value_column,
-      "node-id-sum",
-      fmt::format("{}: {} fits {} for no node; it is not taken", key->key, shown(written), name(type)),
-      "lower the number that is added to $NODEID");
+  findings.add(use == ValueUse::written ? Severity::error : Severity::warning, key->line, key->value_column,
+               "node-id-sum",
+               formatted("{}: {} fits {} for no node; it is not taken", key->key, shown(written), name(type)),
+               "lower the number that is added to $NODEID");
   return std::nullopt;
 }
 

@@ -1,9 +1,10 @@
 #include "od/esi_checks.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
+
+#include "base/format.hpp"
 
 namespace servoctl::od {
 namespace {
@@ -21,7 +22,7 @@ void tell_layout(Findings& findings, std::uint32_t line, std::string_view rule, 
 }
 
 std::string pdo_name(const EsiPdo& pdo) {
-  return fmt::format("{} 0x{:04X}", pdo.direction == PdoDirection::receive ? "RxPdo" : "TxPdo", pdo.index);
+  return formatted("{} 0x{:04X}", pdo.direction == PdoDirection::receive ? "RxPdo" : "TxPdo", pdo.index);
 }
 
 /// Bits of an entry in a PDO; 0 where they vary.
@@ -36,19 +37,19 @@ void check_pdo(const EsiPdo& pdo, const Dictionary& dictionary, const BitSizes& 
     if (from.object.index == 0) continue;  // Fills a gap.
     const auto* entry = dictionary.find(from.object);
     if (entry == nullptr) {
-      tell_layout(findings, from.line, "mapping-absent", pdo_name(pdo),
-                  fmt::format("{} maps {}, which the dictionary does not have", pdo_name(pdo),
-                              to_string(from.object)),
-                  "map another object, or add it to Objects");
+      tell_layout(
+          findings, from.line, "mapping-absent", pdo_name(pdo),
+          formatted("{} maps {}, which the dictionary does not have", pdo_name(pdo), to_string(from.object)),
+          "map another object, or add it to Objects");
       continue;
     }
     const auto bits = mapped_bits(*entry, sizes);
     const bool padded = entry->type == DataType::boolean && from.bits == 8;
     if (bits != 0 && bits != from.bits && !padded)
       tell_layout(findings, from.line, "mapping-length", pdo_name(pdo),
-                  fmt::format("{} maps {} bits of {}, which has {}", pdo_name(pdo), from.bits,
-                              to_string(from.object), bits),
-                  fmt::format("write BitLen {}", bits));
+                  formatted("{} maps {} bits of {}, which has {}", pdo_name(pdo), from.bits,
+                            to_string(from.object), bits),
+                  formatted("write BitLen {}", bits));
   }
 }
 
@@ -67,10 +68,10 @@ void check_process_data(const EsiLayout& layout, Findings& findings) {
     const auto bytes = (bits + 7) / 8;
     if (any && bytes != manager.size)
       tell_layout(findings, manager.line, "sync-manager-size",
-                  fmt::format("Sm {}", outputs ? "Outputs" : "Inputs"),
-                  fmt::format("DefaultSize is {} bytes, but the PDOs assigned to sync manager {} have {}",
-                              manager.size, number, bytes),
-                  fmt::format("write DefaultSize {}, or assign other PDOs", bytes));
+                  formatted("Sm {}", outputs ? "Outputs" : "Inputs"),
+                  formatted("DefaultSize is {} bytes, but the PDOs assigned to sync manager {} have {}",
+                            manager.size, number, bytes),
+                  formatted("write DefaultSize {}, or assign other PDOs", bytes));
   }
 }
 
@@ -82,15 +83,15 @@ void check_mailboxes(const EsiLayout& layout, std::uint32_t device_line, Finding
     if (manager == nullptr) {
       if (layout.coe)
         tell_layout(findings, device_line, "missing-mailbox", {},
-                    fmt::format("the device speaks CoE, but has no Sm {}", section),
+                    formatted("the device speaks CoE, but has no Sm {}", section),
                     "add it, with StartAddress and DefaultSize");
       continue;
     }
     if ((manager->least && manager->size < *manager->least) ||
         (manager->most && manager->size > *manager->most))
       tell_layout(findings, manager->line, "mailbox-size", "Sm " + section,
-                  fmt::format("DefaultSize {} is not within MinSize {} and MaxSize {}", manager->size,
-                              manager->least.value_or(0), manager->most.value_or(0xFFFF)),
+                  formatted("DefaultSize {} is not within MinSize {} and MaxSize {}", manager->size,
+                            manager->least.value_or(0), manager->most.value_or(0xFFFF)),
                   "correct one of them");
   }
 }
@@ -99,7 +100,7 @@ void check_mandatory(const EsiFile& file, Findings& findings) {
   for (const auto& [index, name] : {std::pair(0x1000, "device type"), std::pair(0x1018, "identity")})
     if (file.sheet.dictionary.object(static_cast<std::uint16_t>(index)) == nullptr)
       tell_layout(findings, file.device.line, "missing-mandatory-object", {},
-                  fmt::format("{:04X} ({}) is missing: it is mandatory", index, name), "add it to Objects");
+                  formatted("{:04X} ({}) is missing: it is mandatory", index, name), "add it to Objects");
 }
 
 }  // namespace
@@ -133,8 +134,8 @@ void settle_esi_identity(EsiFile& file, Findings& findings) {
     if (number != 0)
       tell_layout(
           findings, entry->line, "identity-differs", "Object #x1018",
-          fmt::format("0x1018:{} says the {} is 0x{:08X}, the device says 0x{:08X}; the device's is taken",
-                      row.sub, row.name, number, row.device),
+          formatted("0x1018:{} says the {} is 0x{:08X}, the device says 0x{:08X}; the device's is taken",
+                    row.sub, row.name, number, row.device),
           "correct one of them");
   }
 }

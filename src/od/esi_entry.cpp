@@ -1,8 +1,8 @@
 #include "od/esi_entry.hpp"
 
-#include <fmt/format.h>
 #include <array>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "od/eds_value.hpp"
 #include "od/esi_unit.hpp"
@@ -39,13 +39,12 @@ void add_note(Entry& entry, std::string_view english, std::string_view chinese) 
 void read_restrictions(XmlElement access, Entry& entry) {
   if (const auto write = access.attribute("WriteRestrictions"); !write.empty() && writable(entry.access)) {
     const auto states = states_of(write);
-    add_note(entry, fmt::format("can be written in {} only", states),
-             fmt::format("仅可在 {} 状态下写入", states));
+    add_note(entry, formatted("can be written in {} only", states),
+             formatted("仅可在 {} 状态下写入", states));
   }
   if (const auto read = access.attribute("ReadRestrictions"); !read.empty() && readable(entry.access)) {
     const auto states = states_of(read);
-    add_note(entry, fmt::format("can be read in {} only", states),
-             fmt::format("仅可在 {} 状态下读取", states));
+    add_note(entry, formatted("can be read in {} only", states), formatted("仅可在 {} 状态下读取", states));
   }
 }
 
@@ -53,7 +52,7 @@ Access esi_access_of(XmlElement element, EsiFindings& findings) {
   for (const auto& row : kEsiAccess)
     if (equals_nocase(row.word, element.text())) return row.access;
   findings.error(element, "unknown-access-type",
-                 fmt::format("'{}' is not an access type; taken as ro", shown(element.text())),
+                 formatted("'{}' is not an access type; taken as ro", shown(element.text())),
                  "write ro, rw or wo");
   return Access::ro;
 }
@@ -65,7 +64,7 @@ PdoMapping esi_mapping_of(XmlElement element, EsiFindings& findings) {
     rpdo = rpdo || c == 'r';
     tpdo = tpdo || c == 't';
     if (c != 'r' && c != 't' && !findings.enough_of("unknown-mapping"))
-      findings.warn(element, "unknown-mapping", fmt::format("'{}' is no mapping", shown(element.text())),
+      findings.warn(element, "unknown-mapping", formatted("'{}' is no mapping", shown(element.text())),
                     "write R for RxPDOs, T for TxPDOs, RT for both");
   }
   return rpdo && tpdo ? PdoMapping::both : rpdo ? PdoMapping::rpdo : tpdo ? PdoMapping::tpdo : PdoMapping::no;
@@ -82,7 +81,7 @@ void read_esi_flags(XmlElement own, XmlElement of_object, Entry& entry, EsiFindi
   else {
     entry.access = Access::ro;
     findings.warn(own ? own : of_object, "missing-access-type",
-                  fmt::format("{} has no Access; taken as ro", to_string(entry.address)),
+                  formatted("{} has no Access; taken as ro", to_string(entry.address)),
                   "add Flags with Access ro, rw or wo");
   }
   read_restrictions(access, entry);

@@ -1,9 +1,9 @@
 #include "od/esi_findings.hpp"
 
-#include <fmt/format.h>
 #include <array>
 #include <utility>
 
+#include "base/format.hpp"
 #include "od/eds_value.hpp"
 
 namespace servoctl::od {
@@ -19,7 +19,7 @@ std::string section_of(XmlElement element) {
       if (what.empty())
         what = section == "Device" ? element.child("Type").text() : element.child("Name").text();
       if (section == "Sm") what = element.text();
-      return what.empty() ? std::string(section) : fmt::format("{} {}", section, shown(what));
+      return what.empty() ? std::string(section) : formatted("{} {}", section, shown(what));
     }
   return {};
 }

@@ -1,10 +1,10 @@
 #include "od/esi_layout.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "od/eds_value.hpp"
 #include "od/esi_types.hpp"
@@ -67,7 +67,7 @@ EsiPdo pdo_of(XmlElement element, PdoDirection direction, EsiFindings& findings)
   out.line = element.place().line;
   for (const auto& entry : element.children("Entry")) {
     if (out.entries.size() == kMostPdoEntries) {
-      findings.error(entry, "too-many-entries", fmt::format("a PDO has at most {} entries", kMostPdoEntries),
+      findings.error(entry, "too-many-entries", formatted("a PDO has at most {} entries", kMostPdoEntries),
                      "remove those beyond");
       break;
     }
@@ -85,7 +85,7 @@ void read_pdos(XmlElement device, EsiLayout& out, EsiFindings& findings) {
                                      [&](const EsiPdo& p) { return p.index == read.index; });
       if (twice)
         findings.error(element, "duplicate-pdo",
-                       fmt::format("0x{:04X} appears again; the first one is used", read.index),
+                       formatted("0x{:04X} appears again; the first one is used", read.index),
                        "remove one of them");
       else
         out.pdos.push_back(std::move(read));

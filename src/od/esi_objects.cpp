@@ -1,11 +1,11 @@
 #include "od/esi_objects.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/pdo_index.hpp"
 #include "base/text.hpp"
@@ -97,15 +97,15 @@ class ObjectReader {
       return static_cast<std::uint16_t>(number->magnitude);
     findings_->error(
         at ? at : element, "bad-index",
-        at ? fmt::format("'{}' is not an index", shown(at.text())) : std::string("the object has no Index"),
+        at ? formatted("'{}' is not an index", shown(at.text())) : std::string("the object has no Index"),
         "write an index such as #x2000");
     return std::nullopt;
   }
 
   void tell_duplicate(ObjectPlace& again, const ObjectPlace& first) {
     findings_->error(again.element, "duplicate-object",
-                     fmt::format("0x{:04X} appears again, first in line {}; the first one is used",
-                                 again.index, first.element.place().line),
+                     formatted("0x{:04X} appears again, first in line {}; the first one is used", again.index,
+                               first.element.place().line),
                      "remove one of them");
   }
 
@@ -121,7 +121,7 @@ class ObjectReader {
     object.index = place.index;
     auto name = esi_text(place.element, "Name");
     if (name.english.empty())
-      findings_->warn(place.element, "missing-name", fmt::format("0x{:04X} has no Name", place.index),
+      findings_->warn(place.element, "missing-name", formatted("0x{:04X} has no Name", place.index),
                       "add Name");
     object.name = name.english;
     const auto type_name = place.element.child("Type").text();
@@ -155,8 +155,8 @@ class ObjectReader {
       add_member(element, members[i], infos.of(i), name, object);
     if (const auto extra = infos.left_over())
       findings_->warn(extra, "sub-item-without-type",
-                      fmt::format("0x{:04X}: '{}' is none of the entries of {}; it is ignored", object.index,
-                                  shown(extra.child("Name").text()), shown(composite.child("Name").text())),
+                      formatted("0x{:04X}: '{}' is none of the entries of {}; it is ignored", object.index,
+                                shown(extra.child("Name").text()), shown(composite.child("Name").text())),
                       "name it as the SubItem of the type, or add one there");
     check_sub_0(element, object);
   }
@@ -169,7 +169,7 @@ class ObjectReader {
                                    [&](const Entry& e) { return e.address.sub == member.sub; });
     if (twice) {
       findings_->error(member.element, "duplicate-sub-index",
-                       fmt::format("{} appears again; the first one is used", to_string(entry.address)),
+                       formatted("{} appears again; the first one is used", to_string(entry.address)),
                        "correct SubIdx");
       return;
     }
@@ -191,8 +191,8 @@ class ObjectReader {
     entry.name = !display.english.empty() ? display.english : own ? name.english : member.name;
     entry.name_zh = !display.chinese.empty() ? display.chinese : own ? name.chinese : member.name_zh;
     if (!member.of_array || own) return;
-    entry.name = fmt::format("{} {}", object_name.english, member.sub);
-    if (!object_name.chinese.empty()) entry.name_zh = fmt::format("{} {}", object_name.chinese, member.sub);
+    entry.name = formatted("{} {}", object_name.english, member.sub);
+    if (!object_name.chinese.empty()) entry.name_zh = formatted("{} {}", object_name.chinese, member.sub);
   }
 
   void esi_values_of_type(XmlElement item, const EsiType& type, Entry& entry) {
@@ -208,9 +208,9 @@ class ObjectReader {
     const bool padded = type.type == DataType::boolean && bits == 8;
     if (bits != type.bits && !padded)
       findings_->warn(at, "bit-size",
-                      fmt::format("{}: {} bits, but its type has {}; taken as {}", to_string(entry.address),
-                                  bits, type.bits, name(type.type)),
-                      fmt::format("write {}, or another type", type.bits));
+                      formatted("{}: {} bits, but its type has {}; taken as {}", to_string(entry.address),
+                                bits, type.bits, name(type.type)),
+                      formatted("write {}, or another type", type.bits));
   }
 
   void finish(XmlElement described_by, XmlElement element, XmlElement info, EsiType type, Entry entry,
@@ -244,9 +244,9 @@ class ObjectReader {
     const auto highest = object.entries.back().address.sub;
     if (said > highest && !is_pdo_mapping(object.index))
       findings_->warn(element, "sub-0-value",
-                      fmt::format("0x{:04X}: sub 0 says the highest sub-index is {}; it is {}", object.index,
-                                  to_string(count.default_value->value), highest),
-                      fmt::format("write {}, or add the SubItems that are missing", highest));
+                      formatted("0x{:04X}: sub 0 says the highest sub-index is {}; it is {}", object.index,
+                                to_string(count.default_value->value), highest),
+                      formatted("write {}, or add the SubItems that are missing", highest));
   }
 
   EsiTypes types_;

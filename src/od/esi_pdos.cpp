@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "od/esi_layout.hpp"
 
 namespace servoctl::od {
@@ -28,8 +28,8 @@ Entry number_entry(ObjectAddress address, std::string name, DataType type, Acces
 /// What its entries are called in Chinese.
 std::string chinese_name(std::uint16_t index, std::size_t sub) {
   if (sub == 0) return "最大子索引";
-  if (is_pdo_mapping(index)) return fmt::format("映射对象 {}", sub);
-  return fmt::format("{} 分配 {}", index == kOutputAssignment ? "RxPDO" : "TxPDO", sub);
+  if (is_pdo_mapping(index)) return formatted("映射对象 {}", sub);
+  return formatted("{} 分配 {}", index == kOutputAssignment ? "RxPDO" : "TxPDO", sub);
 }
 
 /// A list of numbers with its count in sub 0, as mappings and assignments are.
@@ -41,7 +41,7 @@ Object list_of(std::uint16_t index, std::string name, DataType type, Access acce
   out.entries.push_back(number_entry({index, 0}, "highest sub-index", DataType::u8, access, values.size()));
   for (std::size_t i = 0; i < values.size(); ++i)
     out.entries.push_back(number_entry({index, static_cast<std::uint8_t>(i + 1)},
-                                       fmt::format("{} {}", name, i + 1), type, access, values[i]));
+                                       formatted("{} {}", name, i + 1), type, access, values[i]));
   for (auto& entry : out.entries) {
     entry.line = line;
     entry.name_zh = chinese_name(index, entry.address.sub);
@@ -57,8 +57,7 @@ void add_mapping(const EsiPdo& pdo, bool can_change, Dictionary& dictionary) {
     values.push_back(std::uint64_t{entry.object.index} << 16U | std::uint64_t{entry.object.sub} << 8U |
                      entry.bits);
   const bool receive = pdo.direction == PdoDirection::receive;
-  auto name =
-      fmt::format("{} mapping", pdo.name.empty() ? std::string(receive ? "RxPDO" : "TxPDO") : pdo.name);
+  auto name = formatted("{} mapping", pdo.name.empty() ? std::string(receive ? "RxPDO" : "TxPDO") : pdo.name);
   dictionary.add(list_of(pdo.index, std::move(name), DataType::u32,
                          can_change && !pdo.fixed ? Access::rw : Access::ro, values, pdo.line));
 }

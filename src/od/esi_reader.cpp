@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <map>
@@ -6,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "od/eds_value.hpp"
@@ -28,7 +28,7 @@ constexpr std::size_t kMostListed = 20;  ///< In an error.
 
 tl::unexpected<Error> refuse_esi(std::string_view file, std::string_view why,
                                  std::string hint = std::string(kEsiHint)) {
-  return fail(Errc::file, fmt::format("{}: {}", file, why), std::move(hint));
+  return fail(Errc::file, formatted("{}: {}", file, why), std::move(hint));
 }
 
 /// The encoding that the XML declaration names; empty where it names none that is known here.
@@ -71,12 +71,12 @@ DecodedText decode_xml(std::string_view bytes, Findings& findings) {
   auto out = to_utf8(bytes, as_declared ? *declared : guess);
   if (!proven && !as_declared)
     findings.add(Severity::warning, out.line, out.column, "encoding",
-                 fmt::format("the file is taken as {}, {}", title(out.encoding),
-                             declared ? "which is not what it declares" : "as it declares no encoding"),
+                 formatted("the file is taken as {}, {}", title(out.encoding),
+                           declared ? "which is not what it declares" : "as it declares no encoding"),
                  "save it as UTF-8");
   if (out.skipped_nuls > 0)
     findings.add(Severity::warning, out.line, out.column, "nul-byte",
-                 fmt::format("{} NUL bytes are skipped", out.skipped_nuls), "remove them");
+                 formatted("{} NUL bytes are skipped", out.skipped_nuls), "remove them");
   return out;
 }
 
@@ -117,7 +117,7 @@ EsiDevice device_of(const OpenedEsi& opened, XmlElement element, EsiFindings& fi
 Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
   OpenedEsi out;
   if (bytes.size() > kMostEsiBytes)
-    return refuse_esi(file, fmt::format("{} MiB is too large for an ESI", bytes.size() >> 20U));
+    return refuse_esi(file, formatted("{} MiB is too large for an ESI", bytes.size() >> 20U));
   if (is_binary(bytes)) return refuse_esi(file, "not a text file");
   const auto decoded = decode_xml(bytes, out.findings);
   const auto text = decoded.text(bytes);
@@ -127,7 +127,7 @@ Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
   out.document = std::make_unique<XmlDocument>(std::move(*document));
   const auto root = out.document->root();
   if (root.name() != "EtherCATInfo")
-    return refuse_esi(file, fmt::format("<{}> is not an ESI", shown(root.name())),
+    return refuse_esi(file, formatted("<{}> is not an ESI", shown(root.name())),
                       std::string(what_else(root.name())));
   if (out.document->declares_type())
     out.findings.add(Severity::warning, 1, 1, "document-type",
@@ -139,7 +139,7 @@ Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
       out.groups.emplace(std::string(group.child("Type").text()), std::move(words.english));
   out.devices = descriptions.child("Devices").children("Device", kMostDevices + 1);
   if (out.devices.size() > kMostDevices)
-    return refuse_esi(file, fmt::format("more than {} devices are in this file", kMostDevices),
+    return refuse_esi(file, formatted("more than {} devices are in this file", kMostDevices),
                       "use a file of fewer");
   if (out.devices.empty())
     return refuse_esi(file, "there is no Device in this file",
@@ -152,10 +152,10 @@ std::string listed(const std::vector<EsiDevice>& devices) {
   std::string out;
   for (std::size_t i = 0; i < std::min(devices.size(), kMostListed); ++i)
     append(out,
-           fmt::format("#{} {} (product code 0x{:08X}, revision 0x{:08X})", i + 1, shown(devices[i].name),
-                       devices[i].product_code, devices[i].revision),
+           formatted("#{} {} (product code 0x{:08X}, revision 0x{:08X})", i + 1, shown(devices[i].name),
+                     devices[i].product_code, devices[i].revision),
            "; ");
-  if (devices.size() > kMostListed) out += fmt::format("; {} more", devices.size() - kMostListed);
+  if (devices.size() > kMostListed) out += formatted("; {} more", devices.size() - kMostListed);
   return out;
 }
 
@@ -174,10 +174,10 @@ Result<std::size_t> choose(const std::vector<EsiDevice>& devices, std::string_vi
                            std::string_view word) {
   if (word.empty() && devices.size() == 1) return std::size_t{0};
   const auto hint = [&](std::string_view start) {
-    return fmt::format("{} {}#NUMBER, #NAME or #PRODUCT_CODE:REVISION: {}", start, file, listed(devices));
+    return formatted("{} {}#NUMBER, #NAME or #PRODUCT_CODE:REVISION: {}", start, file, listed(devices));
   };
   if (word.empty())
-    return fail(Errc::usage, fmt::format("{} describes {} devices: which one?", file, devices.size()),
+    return fail(Errc::usage, formatted("{} describes {} devices: which one?", file, devices.size()),
                 hint("write"));
   if (const auto number = parse_digits(word, 10); number && *number >= 1 && *number <= devices.size())
     return static_cast<std::size_t>(*number - 1);
@@ -186,8 +186,8 @@ Result<std::size_t> choose(const std::vector<EsiDevice>& devices, std::string_vi
     if (is_meant(devices[i], word)) meant.push_back(i);
   if (meant.size() == 1) return meant.front();
   return fail(Errc::usage,
-              meant.empty() ? fmt::format("{} has no device '{}'", file, shown(word))
-                            : fmt::format("{} has {} devices '{}'", file, meant.size(), shown(word)),
+              meant.empty() ? formatted("{} has no device '{}'", file, shown(word))
+                            : formatted("{} has {} devices '{}'", file, meant.size(), shown(word)),
               hint("write"));
 }
 
@@ -209,7 +209,7 @@ void read_dictionary(XmlElement device, Dictionary& dictionary, BitSizes& sizes,
     if (const auto other = profile.child("DictionaryFile"))
       findings.warn(
           other, "dictionary-elsewhere",
-          fmt::format("its dictionary is in another file, '{}', which is not read", shown(other.text())),
+          formatted("its dictionary is in another file, '{}', which is not read", shown(other.text())),
           "put the Dictionary into this file");
     const auto own = profile.child("Dictionary");
     if (!own) continue;
@@ -250,7 +250,7 @@ Result<EsiFile> read_device(const OpenedEsi& opened, std::size_t number, std::st
   const auto why = std::find_if(found.begin(), found.end(),
                                 [](const Diagnostic& d) { return d.severity == Severity::error; });
   return refuse_esi(
-      file, fmt::format("'{}' has neither a usable object nor a PDO entry", shown(out.device.name)),
+      file, formatted("'{}' has neither a usable object nor a PDO entry", shown(out.device.name)),
       why == found.end() ? std::string("it cannot be commissioned by objects: is it a coupler or a junction?")
                          : to_string(*why, file));
 }

@@ -1,9 +1,9 @@
 #include "od/esi_types.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "od/eds_value.hpp"
 #include "od/esi_value.hpp"
 
@@ -44,8 +44,8 @@ EsiTypes::EsiTypes(XmlElement data_types, EsiFindings& findings) {
       findings.warn(type, "missing-name", "the type has no Name; nothing can use it", "add Name");
     else if (!by_name_.emplace(name, type).second && !findings.enough_of("duplicate-type"))
       findings.warn(type, "duplicate-type",
-                    fmt::format("{} appears again, first in line {}; the first one is used", shown(name),
-                                by_name_.at(name).place().line),
+                    formatted("{} appears again, first in line {}; the first one is used", shown(name),
+                              by_name_.at(name).place().line),
                     "remove one of them");
   }
 }
@@ -88,7 +88,7 @@ std::optional<EsiType> EsiTypes::demand(std::string_view name, XmlElement at, Es
     findings.error(at, "missing-data-type", "there is no Type", "add Type, for example UDINT");
   else
     findings.error(at, "unknown-data-type",
-                   fmt::format("the type '{}' is not defined; its object is left out", shown(name)),
+                   formatted("the type '{}' is not defined; its object is left out", shown(name)),
                    "define it in DataTypes, or use a base type such as UDINT");
   return std::nullopt;
 }
@@ -121,8 +121,8 @@ void EsiTypes::add_item(XmlElement item, std::vector<EsiMember>& out, EsiFinding
   const auto count = array ? array->count : 1;
   if (count == 0 || first + count - 1 > kLastSub) {
     findings.error(item, "sub-index-range",
-                   fmt::format("{}: {} entries from sub-index {} on; an object has 0 to 255",
-                               shown(member.name), count, first),
+                   formatted("{}: {} entries from sub-index {} on; an object has 0 to 255",
+                             shown(member.name), count, first),
                    "correct SubIdx, LBound or Elements");
     return;
   }

@@ -1,9 +1,9 @@
 #include "od/esi_value.hpp"
 
-#include <fmt/format.h>
 #include <array>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "od/eds_value.hpp"
 
@@ -29,7 +29,7 @@ std::uint64_t checked_number(XmlElement element, std::string_view what, std::str
   const auto number = esi_integer(text);
   if (number && !number->negative && number->magnitude <= max) return number->magnitude;
   findings.error(element, "bad-number",
-                 fmt::format("{}: '{}' is not a number from 0 to {}", what, shown(text), max),
+                 formatted("{}: '{}' is not a number from 0 to {}", what, shown(text), max),
                  "write a number such as 26 or #x1A");
   return otherwise;
 }
@@ -41,14 +41,13 @@ std::optional<Bytes> fitted_data(XmlElement element, DataType type, Bytes bytes,
   if (!size || bytes.size() == *size) return bytes;
   bool loses = false;
   for (std::size_t i = *size; i < bytes.size(); ++i) loses = loses || bytes[i] != 0;
-  const auto message =
-      fmt::format("{}: {} bytes, {} has {}", element.name(), bytes.size(), name(type), *size);
+  const auto message = formatted("{}: {} bytes, {} has {}", element.name(), bytes.size(), name(type), *size);
   if (loses) {
-    findings.error(element, "data-length", message, fmt::format("write {} bytes", *size));
+    findings.error(element, "data-length", message, formatted("write {} bytes", *size));
     return std::nullopt;
   }
   if (type != DataType::boolean)
-    findings.warn(element, "data-length", message, fmt::format("write {} bytes", *size));
+    findings.warn(element, "data-length", message, formatted("write {} bytes", *size));
   bytes.resize(*size);
   return bytes;
 }
@@ -76,7 +75,7 @@ class EsiValueReader {
     if (text.starts_with('#')) return from_text(element, limit);
     auto bytes = parse_hex_bytes(text);
     if (!bytes) {
-      tell(element, limit, fmt::format("'{}' is not bytes in hexadecimal", shown(text)),
+      tell(element, limit, formatted("'{}' is not bytes in hexadecimal", shown(text)),
            "write two digits a byte, the low byte first: 2C01 for 300");
       return std::nullopt;
     }
@@ -92,18 +91,18 @@ class EsiValueReader {
     const auto written = with_0x(text);
     auto value = parse_value(type_, type_ == DataType::bytes ? text : std::string_view(written));
     if (value && encode(type_, *value)) return std::move(*value);
-    const auto why = value ? fmt::format("'{}' does not fit {}", shown(text), name(type_))
+    const auto why = value ? formatted("'{}' does not fit {}", shown(text), name(type_))
                            : clip(value.error().message, 200);
-    tell(element, limit, why, fmt::format("write a value of {}, or leave it out", name(type_)));
+    tell(element, limit, why, formatted("write a value of {}, or leave it out", name(type_)));
     return std::nullopt;
   }
 
   void tell(XmlElement element, bool limit, std::string_view why, std::string remedy) {
     if (limit)
       findings_->warn(element, "limit-outside-type",
-                      fmt::format("{}: {}; no limit is taken", element.name(), why), std::move(remedy));
+                      formatted("{}: {}; no limit is taken", element.name(), why), std::move(remedy));
     else
-      findings_->error(element, "bad-value", fmt::format("{}: {}", element.name(), why), std::move(remedy));
+      findings_->error(element, "bad-value", formatted("{}: {}", element.name(), why), std::move(remedy));
   }
 
   DataType type_;
@@ -168,17 +167,17 @@ void check_esi_limits(XmlElement info, Entry& entry, EsiFindings& findings) {
   if (above(entry.low, entry.high)) {
     findings.warn(
         info, "limits-crossed",
-        fmt::format("{}: the lowest value {} is above the highest, {}, in {}; neither is used", address,
-                    to_string(entry.low->value), to_string(entry.high->value), name(entry.type)),
+        formatted("{}: the lowest value {} is above the highest, {}, in {}; neither is used", address,
+                  to_string(entry.low->value), to_string(entry.high->value), name(entry.type)),
         "correct the limits or the type");
     entry.low = entry.high = std::nullopt;
   }
   const bool below = above(entry.low, entry.default_value);
   if (below || above(entry.default_value, entry.high))
     findings.warn(info, "default-out-of-limits",
-                  fmt::format("{}: the default {} is {} {}", address, to_string(entry.default_value->value),
-                              below ? "below the lowest value," : "above the highest value,",
-                              to_string((below ? entry.low : entry.high)->value)),
+                  formatted("{}: the default {} is {} {}", address, to_string(entry.default_value->value),
+                            below ? "below the lowest value," : "above the highest value,",
+                            to_string((below ? entry.low : entry.high)->value)),
                   "correct the limits or the default");
 }
 

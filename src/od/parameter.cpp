@@ -1,9 +1,9 @@
 #include "od/parameter.hpp"
 
-#include <fmt/format.h>
 #include <array>
 #include <unordered_set>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "od/table_row.hpp"
 
@@ -65,7 +65,7 @@ void read_limits(TableRow& row, Parameter& out) {
   out.min = row.value(kMin, out.type);
   out.max = row.value(kMax, out.type);
   if (out.min && out.max && compare_numbers(*out.min, *out.max) > 0)
-    row.refuse(fmt::format("{}: min is above max", out.id));
+    row.refuse(formatted("{}: min is above max", out.id));
 }
 
 Parameter read_row(TableRow& row) {
@@ -88,7 +88,7 @@ Parameter read_row(TableRow& row) {
   out.effect = row.effect(kEffect);
   out.labels = row.labels(kEnum, kEnumZh);
   out.name = std::string(row.cell(kName));
-  if (out.name.empty()) row.refuse(fmt::format("{} has no name", out.id));
+  if (out.name.empty()) row.refuse(formatted("{} has no name", out.id));
   out.name_zh = std::string(row.cell(kNameZh));
   out.group = std::string(row.cell(kGroup));
   read_flags(row, out);
@@ -114,10 +114,10 @@ Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::strin
     TableRow row(cells, *columns, kColumns, file);
     auto parameter = read_row(row);
     parameter.file_line = cells.line;
-    if (!ids.insert(lower(parameter.id)).second) row.refuse(fmt::format("{} appears twice", parameter.id));
+    if (!ids.insert(lower(parameter.id)).second) row.refuse(formatted("{} appears twice", parameter.id));
     if (parameter.object && !objects.insert(*parameter.object).second)
-      row.refuse(fmt::format("{}: object {} belongs to another parameter as well", parameter.id,
-                             to_string(*parameter.object)));
+      row.refuse(formatted("{}: object {} belongs to another parameter as well", parameter.id,
+                           to_string(*parameter.object)));
     if (row.error()) return fail(*row.error());
     out.push_back(std::move(parameter));
   }

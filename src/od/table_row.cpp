@@ -1,8 +1,8 @@
 #include "od/table_row.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -29,7 +29,7 @@ Result<TableColumns> TableColumns::find(const CsvTable& table, std::span<const s
                                         std::string_view file) {
   for (const auto& column : table.columns) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    return fail(file_error(file, 1, fmt::format("column '{}' is unknown", column),
+    return fail(file_error(file, 1, formatted("column '{}' is unknown", column),
                            did_you_mean(column, std::vector<std::string>(known.begin(), known.end()))));
   }
   TableColumns out;
@@ -43,7 +43,7 @@ std::string_view TableRow::cell(std::size_t column) const {
 }
 
 void TableRow::refuse(std::size_t column, std::string_view expected) {
-  refuse(fmt::format("column {}: '{}' is not {}", names_[column], cell(column), expected));
+  refuse(formatted("column {}: '{}' is not {}", names_[column], cell(column), expected));
 }
 
 void TableRow::refuse(std::string what) {
@@ -51,7 +51,7 @@ void TableRow::refuse(std::string what) {
   error_.emplace();
   error_->code = Errc::file;
   error_->line = row_->line;
-  error_->message = fmt::format("{}:{}: {}", file_, row_->line, what);
+  error_->message = formatted("{}:{}: {}", file_, row_->line, what);
 }
 
 std::optional<ObjectAddress> TableRow::object(std::size_t column) {
@@ -87,7 +87,7 @@ std::optional<Value> TableRow::value(std::size_t column, DataType type) {
   const auto text = cell(column);
   if (text.empty()) return std::nullopt;
   const auto value = parse_value(type, text);
-  if (!value) refuse(column, fmt::format("a value of {}: {}", name(type), value.error().message));
+  if (!value) refuse(column, formatted("a value of {}: {}", name(type), value.error().message));
   return value ? std::optional<Value>(*value) : std::nullopt;
 }
 
@@ -100,7 +100,7 @@ std::vector<EnumLabel> TableRow::labels(std::size_t column, std::size_t column_z
   if (!english || !chinese) return out;
   for (const auto& label : *english) {
     if (std::any_of(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; }))
-      refuse(column, fmt::format("a list without doubles ({} stands twice)", label.first));
+      refuse(column, formatted("a list without doubles ({} stands twice)", label.first));
     out.push_back({label.first, label.second, {}});
   }
   for (const auto& label : *chinese) {
@@ -108,7 +108,7 @@ std::vector<EnumLabel> TableRow::labels(std::size_t column, std::size_t column_z
         std::find_if(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; });
     if (same == out.end())
       refuse(column_zh,
-             fmt::format("a list with the values of the English one ({} is not in it)", label.first));
+             formatted("a list with the values of the English one ({} is not in it)", label.first));
     else
       same->label_zh = label.second;
   }

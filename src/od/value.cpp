@@ -1,11 +1,11 @@
 #include "od/value.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -27,21 +27,21 @@ std::int64_t max_signed(DataType type) { return static_cast<std::int64_t>(max_un
 std::int64_t min_signed(DataType type) { return -max_signed(type) - 1; }
 
 std::string range_of(DataType type) {
-  if (is_signed(type)) return fmt::format("{}..{}", min_signed(type), max_signed(type));
-  return fmt::format("0..{}", max_unsigned(type));
+  if (is_signed(type)) return formatted("{}..{}", min_signed(type), max_signed(type));
+  return formatted("0..{}", max_unsigned(type));
 }
 
 tl::unexpected<Error> does_not_fit(DataType type, std::string_view text) {
   if (is_integer(type))
-    return fail(Errc::usage, fmt::format("{} does not fit {} ({})", text, name(type), range_of(type)));
-  return fail(Errc::usage, fmt::format("'{}' does not fit {}", text, name(type)));
+    return fail(Errc::usage, formatted("{} does not fit {} ({})", text, name(type), range_of(type)));
+  return fail(Errc::usage, formatted("'{}' does not fit {}", text, name(type)));
 }
 
 tl::unexpected<Error> not_a_value(DataType type, std::string_view text) {
   if (is_integer(type))
-    return fail(Errc::usage, fmt::format("'{}' is not a number", text),
-                fmt::format("write an integer ({}): 100, 0x64 or 64h", range_of(type)));
-  return fail(Errc::usage, fmt::format("'{}' is no {}", text, name(type)));
+    return fail(Errc::usage, formatted("'{}' is not a number", text),
+                formatted("write an integer ({}): 100, 0x64 or 64h", range_of(type)));
+  return fail(Errc::usage, formatted("'{}' is no {}", text, name(type)));
 }
 
 bool is_hexadecimal(std::string_view text) {
@@ -56,7 +56,7 @@ std::int64_t sign_extended(std::uint64_t raw, std::size_t bits) {
 /// The double whose digits are those of the float: 0.1f becomes 0.1, not 0.10000000149; encoded again it is
 /// the same float.
 double shortest(float value) {
-  return std::isfinite(value) ? parse_real(fmt::format("{}", value)).value_or(value)
+  return std::isfinite(value) ? parse_real(formatted("{}", value)).value_or(value)
                               : static_cast<double>(value);
 }
 
@@ -81,7 +81,7 @@ Result<Value> parse_bytes_value(DataType type, std::string_view text) {
   auto digits = starts_with_nocase(text, "hex:") ? text.substr(4) : text;
   auto bytes = parse_hex_bytes(digits);
   if (!bytes)
-    return fail(Errc::usage, fmt::format("'{}' is no {}", text, name(type)), "write bytes as hex:00 64 FF");
+    return fail(Errc::usage, formatted("'{}' is no {}", text, name(type)), "write bytes as hex:00 64 FF");
   return Value(std::move(*bytes));
 }
 
@@ -129,7 +129,7 @@ Result<Bytes> encode(DataType type, const Value& value) {
     const auto size = size_of(type);
     if (size && bytes->size() != *size)
       return fail(Errc::usage,
-                  fmt::format("{} bytes do not fit {} ({} bytes)", bytes->size(), name(type), *size));
+                  formatted("{} bytes do not fit {} ({} bytes)", bytes->size(), name(type), *size));
     return *bytes;
   }
   return does_not_fit(type, to_string(value));
@@ -138,7 +138,7 @@ Result<Bytes> encode(DataType type, const Value& value) {
 Result<Value> decode(DataType type, ByteSpan bytes) {
   const auto size = size_of(type);
   if (size && bytes.size() != *size)
-    return fail(Errc::protocol, fmt::format("{} bytes received, {} has {}", bytes.size(), name(type), *size),
+    return fail(Errc::protocol, formatted("{} bytes received, {} has {}", bytes.size(), name(type), *size),
                 "the dictionary in use may belong to another drive or firmware");
   if (is_signed(type)) return Value(sign_extended(load_le(bytes), bits_of(type)));
   if (is_unsigned(type)) return Value(load_le(bytes));
@@ -169,9 +169,9 @@ Result<Value> parse_value(DataType type, std::string_view text) {
 
 std::string to_string(const Value& value) {
   struct Text {
-    std::string operator()(std::int64_t i) const { return fmt::format("{}", i); }
-    std::string operator()(std::uint64_t u) const { return fmt::format("{}", u); }
-    std::string operator()(double d) const { return fmt::format("{}", d); }
+    std::string operator()(std::int64_t i) const { return formatted("{}", i); }
+    std::string operator()(std::uint64_t u) const { return formatted("{}", u); }
+    std::string operator()(double d) const { return formatted("{}", d); }
     std::string operator()(const std::string& s) const { return s; }
     std::string operator()(const Bytes& b) const { return to_hex(b); }
   };

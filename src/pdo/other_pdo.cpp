@@ -1,8 +1,8 @@
 #include "pdo/other_pdo.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "canopen/sdo_abort.hpp"
 
 namespace servoctl::pdo {
@@ -39,11 +39,11 @@ std::string other_pdo_hint(const drive::Profile& profile, const PresentPdos& pre
   if (found == wanted.pdos.end() || other == nullptr) return {};
   std::string words;
   for (const auto& entry : found->entries)
-    words += entry.is_gap() ? fmt::format(" gap{}", entry.bits)
-                            : fmt::format(" {}/{}", to_string(entry.object), entry.bits);
-  return fmt::format("the drive fixes what {} carries; try another PDO: `pdo map {}{} -n {}`",
-                     canopen::name(fixed.direction, fixed.number),
-                     canopen::name(other->direction, other->number), words, present.node);
+    words += entry.is_gap() ? formatted(" gap{}", entry.bits)
+                            : formatted(" {}/{}", to_string(entry.object), entry.bits);
+  return formatted("the drive fixes what {} carries; try another PDO: `pdo map {}{} -n {}`",
+                   canopen::name(fixed.direction, fixed.number),
+                   canopen::name(other->direction, other->number), words, present.node);
 }
 
 }  // namespace servoctl::pdo

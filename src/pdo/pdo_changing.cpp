@@ -1,10 +1,10 @@
 #include "pdo/pdo_changing.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <span>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "pdo/other_pdo.hpp"
@@ -99,7 +99,7 @@ class Changing {
       if (const auto fits = check(job); !fits) {
         auto error = fits.error();
         error.node = job.present.node;
-        error.message = fmt::format("node {}: {}", job.present.node, error.message);
+        error.message = formatted("node {}: {}", job.present.node, error.message);
         return fail(std::move(error));
       }
       if (const auto planned = plan(job); !planned) return planned;
@@ -156,11 +156,11 @@ class Changing {
   std::string question() const {
     std::string pdos;
     std::string nodes;
-    for (const auto& job : jobs_) append(nodes, fmt::format("{}", job.present.node));
+    for (const auto& job : jobs_) append(nodes, formatted("{}", job.present.node));
     for (const auto& pdo : jobs_.front().wanted.pdos) append(pdos, canopen::name(pdo.direction, pdo.number));
     return jobs_.front().wanted.pdos.size() == 1
-               ? fmt::format("Change {} of node {}? Other users of it must be changed too.", pdos, nodes)
-               : fmt::format("Change {} of node {}? Other users of them must be changed too.", pdos, nodes);
+               ? formatted("Change {} of node {}? Other users of it must be changed too.", pdos, nodes)
+               : formatted("Change {} of node {}? Other users of them must be changed too.", pdos, nodes);
   }
 
   /// What changes it, and what the family's password and memory need around it.

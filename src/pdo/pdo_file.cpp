@@ -1,9 +1,9 @@
 // Reads PDOs from a file.
-#include <fmt/format.h>
 #include <algorithm>
 #include <limits>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "pdo/pdo_recipes.hpp"
 #include "show/field_reader.hpp"
@@ -25,7 +25,7 @@ std::optional<std::string> read_recipe(const Value& record, const std::string& w
   if (fields == nullptr) return where + " is not an object";
   for (const auto& field : *fields)
     if (std::find(std::begin(kKeys), std::end(kKeys), field.key) == std::end(kKeys))
-      return fmt::format("{}: unknown key '{}'", where, field.key);
+      return formatted("{}: unknown key '{}'", where, field.key);
   show::FieldReader reader(record, where);
   out.pdo = reader.text("pdo", true);
   out.cob_id = reader.text("cob_id");
@@ -69,7 +69,7 @@ Result<PdoFile> read_json(std::string_view text, const std::string& file) {
   if (list == nullptr) reader.refuse("pdo");
   auto error = reader.error();
   for (std::size_t i = 0; list != nullptr && i < list->size() && !error; ++i)
-    error = read_recipe((*list)[i], fmt::format("{}: pdo {}", file, i + 1), out.pdos.emplace_back());
+    error = read_recipe((*list)[i], formatted("{}: pdo {}", file, i + 1), out.pdos.emplace_back());
   if (error) return fail(Errc::file, *error, "`pdo save` writes such a file");
   return out;
 }

@@ -1,9 +1,9 @@
 #include "pdo/pdo_neighbours.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 
+#include "base/format.hpp"
 #include "session/option_scope.hpp"
 #include "show/pdo_report.hpp"
 
@@ -92,7 +92,7 @@ class Neighbours {
     const auto id = show::can_id_text(pdo.cob_id);
     if (pdo.direction == PdoDirection::receive && theirs.direction == PdoDirection::transmit) {
       desk_->notices.push_back(
-          fmt::format("node {}: {} receives what {} of node {} sends with {}", node, mine, name, other, id));
+          formatted("node {}: {} receives what {} of node {} sends with {}", node, mine, name, other, id));
       return {};
     }
     const auto what = pdo.direction == PdoDirection::receive      ? "one frame would control both"
@@ -100,8 +100,8 @@ class Neighbours {
                                                                   : "both would send it";
     return fail(
         drive_error(Errc::refused, node,
-                    fmt::format("{}: CAN-ID {} is used by {} of node {}: {}", mine, id, name, other, what),
-                    fmt::format("use another one, or `pdo disable {} -n {}` first", name, other)));
+                    formatted("{}: CAN-ID {} is used by {} of node {}: {}", mine, id, name, other, what),
+                    formatted("use another one, or `pdo disable {} -n {}` first", name, other)));
   }
 
   show::Desk* desk_;

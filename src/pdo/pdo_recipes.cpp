@@ -1,8 +1,8 @@
 #include "pdo/pdo_recipes.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "session/pdo_setup.hpp"
 #include "settings/backup_formats.hpp"
 #include "show/pdo_report.hpp"
@@ -23,7 +23,7 @@ tl::unexpected<Error> of(const PdoRecipe& recipe, Error error) {
 Result<void> set_times(const PdoRecipe& recipe, Pdo& pdo) {
   if (recipe.inhibit_us) {
     if (*recipe.inhibit_us % 100 != 0 || *recipe.inhibit_us / 100 > 0xFFFF)
-      return fail(Errc::usage, fmt::format("inhibit time {} us is not possible", *recipe.inhibit_us),
+      return fail(Errc::usage, formatted("inhibit time {} us is not possible", *recipe.inhibit_us),
                   "in steps of 100 us, at most 6553500");
     pdo.inhibit = static_cast<std::uint16_t>(*recipe.inhibit_us / 100);
   }
@@ -75,7 +75,7 @@ std::string toml_text(const std::string& text) {
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
     if (static_cast<unsigned char>(c) < ' ' || c == 0x7F)
-      out += fmt::format("\\u{:04X}", static_cast<unsigned char>(c));
+      out += formatted("\\u{:04X}", static_cast<unsigned char>(c));
     else
       out += c;
   }
@@ -86,14 +86,14 @@ std::string fields(const PdoRecipe& recipe, std::string_view begin, std::string_
                    std::string_view end) {
   std::string out;
   const auto add = [&](std::string_view key, const std::string& value) {
-    out += fmt::format("{}{}{}{}{}", begin, key, separator, value, end);
+    out += formatted("{}{}{}{}{}", begin, key, separator, value, end);
   };
   if (!recipe.cob_id.empty()) add("cob_id", toml_text(recipe.cob_id));
   if (recipe.valid) add("valid", *recipe.valid ? "true" : "false");
-  if (recipe.type) add("type", fmt::format("{}", *recipe.type));
-  if (recipe.inhibit_us) add("inhibit_us", fmt::format("{}", *recipe.inhibit_us));
-  if (recipe.event_ms) add("event_ms", fmt::format("{}", *recipe.event_ms));
-  if (recipe.sync_start) add("sync_start", fmt::format("{}", *recipe.sync_start));
+  if (recipe.type) add("type", formatted("{}", *recipe.type));
+  if (recipe.inhibit_us) add("inhibit_us", formatted("{}", *recipe.inhibit_us));
+  if (recipe.event_ms) add("event_ms", formatted("{}", *recipe.event_ms));
+  if (recipe.sync_start) add("sync_start", formatted("{}", *recipe.sync_start));
   return out;
 }
 
@@ -135,7 +135,7 @@ PdoRecipe recipe_of(const drive::Profile* profile, const PresentPdos& present, c
                      load_le(present.values.at({pdo.mapping_index(), 0})) == pdo.entries.size();
   if (whole) out.map.emplace();
   for (const auto& entry : pdo.entries)
-    if (whole) out.map->push_back(fmt::format("{}/{}", to_string(entry.object), entry.bits));
+    if (whole) out.map->push_back(formatted("{}/{}", to_string(entry.object), entry.bits));
   if (!holds(communication, 1)) {
     const auto assigned = session::assigned_pdos(profile, present.values);
     // Nothing is known of an assignment that is not told: it stays as it is.
@@ -146,7 +146,7 @@ PdoRecipe recipe_of(const drive::Profile* profile, const PresentPdos& present, c
   }
   const auto can_id = pdo.can_id();
   if (can_id > 0x7F && can_id <= 0x7FF && (can_id & 0x7FU) == present.node)
-    out.cob_id = fmt::format("$NODEID+0x{:X}", can_id - present.node);
+    out.cob_id = formatted("$NODEID+0x{:X}", can_id - present.node);
   else
     out.cob_id = show::can_id_text(can_id);
   out.valid = pdo.is_valid();
@@ -158,30 +158,30 @@ PdoRecipe recipe_of(const drive::Profile* profile, const PresentPdos& present, c
 }
 
 std::string pdo_toml(const drive::PdoFile& file, const std::vector<std::vector<std::string>>& names) {
-  auto out = fmt::format("format = 1\nfamily = {}\n", toml_text(file.family));
+  auto out = formatted("format = 1\nfamily = {}\n", toml_text(file.family));
   for (std::size_t i = 0; i < file.pdos.size(); ++i) {
     const auto& recipe = file.pdos[i];
-    out += fmt::format("\n[[pdo]]\npdo = \"{}\"\n{}", recipe.pdo, fields(recipe, "", " = ", "\n"));
+    out += formatted("\n[[pdo]]\npdo = \"{}\"\n{}", recipe.pdo, fields(recipe, "", " = ", "\n"));
     if (!recipe.map) continue;
     out += "map = [\n";
     const auto& map = *recipe.map;
     for (std::size_t k = 0; k < map.size(); ++k)
-      out += fmt::format("  {}, # {}\n", toml_text(map[k]), settings::comment_text(names[i][k]));
+      out += formatted("  {}, # {}\n", toml_text(map[k]), settings::comment_text(names[i][k]));
     out += "]\n";
   }
   return out;
 }
 
 std::string pdo_json(const drive::PdoFile& file) {
-  auto out = fmt::format("{{\"format\":1,\"family\":{},\"pdo\":[", toml_text(file.family));
+  auto out = formatted("{{\"format\":1,\"family\":{},\"pdo\":[", toml_text(file.family));
   for (std::size_t i = 0; i < file.pdos.size(); ++i) {
     const auto& recipe = file.pdos[i];
     std::string map;
     for (const auto& word : recipe.map.value_or(std::vector<std::string>()))
       map += (map.empty() ? "" : ",") + toml_text(word);
-    const auto mapping = recipe.map ? fmt::format(",\"map\":[{}]", map) : std::string();
-    out += fmt::format("{}\n{{\"pdo\":\"{}\"{}{}}}", i == 0 ? "" : ",", recipe.pdo,
-                       fields(recipe, ",\"", "\":", ""), mapping);
+    const auto mapping = recipe.map ? formatted(",\"map\":[{}]", map) : std::string();
+    out += formatted("{}\n{{\"pdo\":\"{}\"{}{}}}", i == 0 ? "" : ",", recipe.pdo,
+                     fields(recipe, ",\"", "\":", ""), mapping);
   }
   return out + "\n]}\n";
 }

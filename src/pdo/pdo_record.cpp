@@ -1,10 +1,10 @@
 #include "pdo/pdo_record.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
 #include "base/bytes.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "session/identify.hpp"
 #include "settings/backup_file.hpp"
@@ -19,7 +19,7 @@ using session::Identity;
 std::string name_of_drive(const Identity& drive) {
   std::string out;
   const auto add = [&](std::string_view mark, const std::optional<std::uint32_t>& number) {
-    if (number) out += fmt::format("-{}{:X}", mark, *number);
+    if (number) out += formatted("-{}{:X}", mark, *number);
   };
   add("v", drive.vendor_id);
   add("p", drive.product_code);
@@ -37,9 +37,9 @@ bool is_other_drive(const Identity& one, const Identity& other) {
 std::string text_of(const Identity& drive) {
   std::string out;
   const auto add = [&](const std::string& part) { append(out, part); };
-  if (drive.vendor_id) add(fmt::format("vendor 0x{:X}", *drive.vendor_id));
-  if (drive.product_code) add(fmt::format("product 0x{:X}", *drive.product_code));
-  if (drive.serial) add(fmt::format("serial {}", *drive.serial));
+  if (drive.vendor_id) add(formatted("vendor 0x{:X}", *drive.vendor_id));
+  if (drive.product_code) add(formatted("product 0x{:X}", *drive.product_code));
+  if (drive.serial) add(formatted("serial {}", *drive.serial));
   return out.empty() ? "unknown" : out;
 }
 
@@ -48,7 +48,7 @@ std::string text_of(const Identity& drive) {
 PdoRecord::PdoRecord(const show::Desk& desk, std::uint8_t node)
     : desk_(&desk),
       node_(node),
-      name_(fmt::format("pdos-before-{}-node-{}", show::bus_name(desk.session->url()), node)) {}
+      name_(formatted("pdos-before-{}-node-{}", show::bus_name(desk.session->url()), node)) {}
 
 /// Of any drive that has been this node. The journal is written last and removed first.
 std::vector<fs::path> PdoRecord::found() const {
@@ -97,8 +97,8 @@ Result<std::optional<settings::RestoreJournal>> PdoRecord::take_up(const fs::pat
     if (!drive) return fail(drive.error());
     if (is_other_drive(backup->identity, *drive))
       return fail(Errc::refused,
-                  fmt::format("node {} ({}) is not the drive whose change was interrupted ({})", node_,
-                              text_of(*drive), text_of(backup->identity)),
+                  formatted("node {} ({}) is not the drive whose change was interrupted ({})", node_,
+                            text_of(*drive), text_of(backup->identity)),
                   "reconnect that drive at its node-ID, or copy the PDOs by `pdo save` and `pdo apply`");
     mine_ = true;
     file_ = record;
@@ -119,11 +119,11 @@ std::string PdoRecord::notice_of(const fs::path& record, const std::optional<Ide
   const auto backup = settings::read_backup(record);
   const auto since = backup ? ", begun at " + backup->time + "," : std::string();
   if (backup && drive && is_other_drive(backup->identity, *drive))
-    return fmt::format(
+    return formatted(
         "node {}: a PDO change of another drive that was node {} here ({}){} was interrupted; {} holds that "
         "drive's old PDOs (delete the file if not needed)",
         node_, node_, text_of(backup->identity), since, record.string());
-  return fmt::format(
+  return formatted(
       "node {}: a change of its PDOs{} was interrupted; `pdo apply {} -n {}{}` restores the old ones (delete "
       "the file if not needed)",
       node_, since, record.string(), node_, backup ? " -d " + backup->family : "");

@@ -1,11 +1,11 @@
 #include "pdo/pdo_source.hpp"
 
-#include <fmt/format.h>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "od/data_sheet.hpp"
 #include "pdo/pdo_recipes.hpp"
@@ -86,8 +86,8 @@ Result<drive::PdoFile> from_backup(const drive::Profile& profile, const std::fil
 }
 
 tl::unexpected<Error> has_errors(const std::string& file, std::size_t count) {
-  return fail(Errc::file, fmt::format("{} has {} errors", file, count),
-              fmt::format("`eds check {}` shows them", file));
+  return fail(Errc::file, formatted("{} has {} errors", file, count),
+              formatted("`eds check {}` shows them", file));
 }
 
 Result<drive::PdoFile> from_esi(const drive::Profile& profile, const std::string& word,
@@ -129,10 +129,10 @@ Result<drive::PdoFile> read_any(const drive::Profile& profile, const std::filesy
 Result<drive::PdoFile> read_pdo_source(const drive::Profile& profile, const std::filesystem::path& file) {
   auto out = read_any(profile, file);
   if (!out) return out;
-  if (out->pdos.empty()) return fail(Errc::negative, fmt::format("{} contains no PDOs", file.string()));
+  if (out->pdos.empty()) return fail(Errc::negative, formatted("{} contains no PDOs", file.string()));
   if (!out->family.empty() && !equals_nocase(out->family, profile.family))
     return fail(Errc::refused,
-                fmt::format("{} is for {}, not for {}", file.string(), out->family, profile.family),
+                formatted("{} is for {}, not for {}", file.string(), out->family, profile.family),
                 "edit a copy: remove the family, or set this one");
   return out;
 }

@@ -1,9 +1,9 @@
 #include "pdo/scope_mapping.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "pdo/pdo_changing.hpp"
 #include "session/option_scope.hpp"
@@ -31,7 +31,7 @@ bool is_spare(const Pdo& pdo, const session::Values& values) {
 }  // namespace
 
 std::string reason_naming(std::uint8_t node, const Error& error) {
-  return error.node ? error.message : fmt::format("node {}: {}", node, error.message);
+  return error.node ? error.message : formatted("node {}: {}", node, error.message);
 }
 
 Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration period,
@@ -76,7 +76,7 @@ Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>&
   if (!state) return fail(state.error());
   if (*state != session::NodeState::operational)
     return fail(Errc::negative, "it is not known to be operational, and TPDOs are sent only then",
-                fmt::format("`nmt start -n {}`", node_));
+                formatted("`nmt start -n {}`", node_));
   return check_still(plan);
 }
 
@@ -150,10 +150,10 @@ void ScopeMapping::end() {
   if (done) return record_.settle();
   auto error = done.error();
   error.message =
-      fmt::format("{} could not be restored: {}; still changed, or not readable: {}",
-                  canopen::name(pdo_.direction, pdo_.number), reason_naming(node_, error), astray());
+      formatted("{} could not be restored: {}; still changed, or not readable: {}",
+                canopen::name(pdo_.direction, pdo_.number), reason_naming(node_, error), astray());
   error.node = node_;
-  error.hint = fmt::format("`pdo show -n {}` shows it; a restart of the drive loads the stored one", node_);
+  error.hint = formatted("`pdo show -n {}` shows it; a restart of the drive loads the stored one", node_);
   desk_->errors.push_back(std::move(error));
 }
 

@@ -1,10 +1,10 @@
 #include "report/axis.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
 #include "base/decade.hpp"
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "report/chinese_marks.hpp"
@@ -69,8 +69,8 @@ std::optional<Extent> time_extent(std::span<const Series> series) {
 std::string Ticks::text(double value) const {
   if (std::abs(value) < step / 2) return "0";
   const int places = decade_of(step * (1 + 1e-9));
-  if (places < -6 || std::abs(value) >= 1e15) return fmt::format("{:.4g}", value);
-  return fmt::format("{:.{}f}", value, std::max(-places, 0));
+  if (places < -6 || std::abs(value) >= 1e15) return formatted("{:.4g}", value);
+  return formatted("{:.{}f}", value, std::max(-places, 0));
 }
 
 Ticks ticks_of(const Extent& extent, std::size_t most) { return marks(extent, step_of(extent, most)); }
@@ -85,7 +85,7 @@ Axis axis_of(const Extent& extent, std::size_t most) {
 std::string title_of(const Series& series) {
   auto name = printable(series.name);
   std::replace(name.begin(), name.end(), '_', ' ');
-  return series.unit.empty() ? name : chinese_marks(fmt::format("{} ({})", name, printable(series.unit)));
+  return series.unit.empty() ? name : chinese_marks(formatted("{} ({})", name, printable(series.unit)));
 }
 
 }  // namespace servoctl::report

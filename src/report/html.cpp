@@ -1,8 +1,8 @@
 #include "report/html.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "report/line.hpp"
 #include "report/markup.hpp"
@@ -59,8 +59,7 @@ table.signatures td { height: 4rem; vertical-align: bottom; border-bottom: 1px s
 bool is_block(const Value& value) {
   if (const auto* list = std::get_if<List>(&value.data()))
     return std::any_of(list->begin(), list->end(), is_block);
-  return value.table() != nullptr || std::holds_alternative<Record>(value.data()) ||
-         value.plot() != nullptr;
+  return value.table() != nullptr || std::holds_alternative<Record>(value.data()) || value.plot() != nullptr;
 }
 
 bool is_nothing(const Value& value) {
@@ -117,14 +116,14 @@ class Writer {
     for (const auto i : shown) {
       const auto& column = table.columns[i];
       numbers[i] = is_all_numbers(table, i);
-      out_ += fmt::format("<th{}>{}</th>", numbers[i] ? " class=\"number\"" : "",
-                          heading(column.title.empty() ? column.key : column.title));
+      out_ += formatted("<th{}>{}</th>", numbers[i] ? " class=\"number\"" : "",
+                        heading(column.title.empty() ? column.key : column.title));
     }
     out_ += "</tr></thead>\n<tbody>\n";
     for (const auto& row : table.rows) {
       out_ += "<tr>";
       for (const auto i : shown)
-        out_ += fmt::format("<td{}>{}</td>", cell_style(row[i], numbers[i]), inline_text(row[i]));
+        out_ += formatted("<td{}>{}</td>", cell_style(row[i], numbers[i]), inline_text(row[i]));
       out_ += "</tr>\n";
     }
     out_ += "</tbody></table></div>\n";
@@ -155,11 +154,11 @@ class Writer {
     for (const auto& field : record)
       if (field.show != Show::json && !is_nothing(field.value) && !is_block(field.value))
         lines +=
-            fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", heading(title(field)), inline_text(field.value));
+            formatted("<tr><th>{}</th><td>{}</td></tr>\n", heading(title(field)), inline_text(field.value));
     if (!lines.empty()) out_ += "<table class=\"fields\"><tbody>\n" + lines + "</tbody></table>\n";
     for (const auto& field : record) {
       if (field.show == Show::json || !is_block(field.value)) continue;
-      out_ += fmt::format("<h{0}>{1}</h{0}>\n", level, heading(title(field)));
+      out_ += formatted("<h{0}>{1}</h{0}>\n", level, heading(title(field)));
       write(field.value, std::min(level + 1, kLowest));
     }
   }
@@ -179,22 +178,22 @@ std::string to_html(const Value& value, const Translate& translate, int level) {
 std::string html_page(const Page& page) {
   std::string body;
   if (!page.picture.empty())
-    body += fmt::format("<img class=\"picture\" alt=\"\" src=\"{}\">\n", escaped(page.picture));
-  body += fmt::format("<h1>{}</h1>\n", escaped(page.title));
+    body += formatted("<img class=\"picture\" alt=\"\" src=\"{}\">\n", escaped(page.picture));
+  body += formatted("<h1>{}</h1>\n", escaped(page.title));
   std::size_t sheets = 0;
   for (const auto& section : page.sections) {
     if (section.new_sheet)
       body +=
-          fmt::format("{}<section class=\"sheet sheet{}\">\n", sheets > 0 ? "</section>\n" : "", sheets + 1);
+          formatted("{}<section class=\"sheet sheet{}\">\n", sheets > 0 ? "</section>\n" : "", sheets + 1);
     sheets += section.new_sheet;
-    body += fmt::format("<h{0}>{1}</h{0}>\n", section.level, escaped(section.title));
+    body += formatted("<h{0}>{1}</h{0}>\n", section.level, escaped(section.title));
     if (!section.note.empty()) body += "<p class=\"note\">" + escaped(section.note) + "</p>\n";
     body += to_html(section.value, page.translate, section.level + 1);
   }
   body += signature_lines(page);
   if (sheets > 0) body += "</section>\n";
   // Nothing may be loaded or run, whatever a mistake in here would let through.
-  return fmt::format(
+  return formatted(
       "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; "
       "style-src 'unsafe-inline'{}\">\n"

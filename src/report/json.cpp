@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "base/format.hpp"
 #include "base/utf8.hpp"
 #include "report/json_writer.hpp"
 #include "report/value.hpp"
@@ -244,8 +245,8 @@ tl::unexpected<Error> nested_too_deep(std::string_view text, std::size_t place, 
   const auto begin = text.substr(0, place).rfind('\n');
   auto error =
       fail(Errc::file,
-           fmt::format("{}:{}: column {}: lists and records are nested deeper than {} levels", file, line,
-                       begin == std::string_view::npos ? place + 1 : place - begin, kDeepestJson),
+           formatted("{}:{}: column {}: lists and records are nested deeper than {} levels", file, line,
+                     begin == std::string_view::npos ? place + 1 : place - begin, kDeepestJson),
            "servoctl writes no such file: is it the right one?")
           .value();
   error.line = line;
@@ -261,7 +262,7 @@ Result<Value> parse_json(std::string_view text, std::string_view file) {
   } catch (const Json::parse_error& problem) {
     return fail(file_error(file, line_at(text, problem.byte), "not JSON, or truncated"));
   } catch (const Json::exception& problem) {
-    return fail(Errc::file, fmt::format("{}: {}", file, problem.what()));
+    return fail(Errc::file, formatted("{}: {}", file, problem.what()));
   }
 }
 

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "report/markup.hpp"
 #include "report/verdict.hpp"
 
@@ -15,23 +15,23 @@ std::size_t count(const TestResult& result, Verdict verdict) {
 
 std::string case_xml(const TestResult& result, const Criterion& criterion) {
   const auto words = escaped(in_words(criterion));
-  const auto head = fmt::format(R"(    <testcase classname="servoctl.{}.node-{}" name="{}" time="0")",
-                                escaped(result.test), result.node, escaped(criterion.id));
+  const auto head = formatted(R"(    <testcase classname="servoctl.{}.node-{}" name="{}" time="0")",
+                              escaped(result.test), result.node, escaped(criterion.id));
   switch (criterion.verdict) {
     case Verdict::failed:
-      return fmt::format(
+      return formatted(
           "{}>\n      <failure message=\"{}\" type=\"limit\">{}: {}</failure>\n    </testcase>\n", head,
           words, escaped(criterion.name), words);
     case Verdict::skipped:
-      return fmt::format("{}>\n      <skipped message=\"{}\"/>\n    </testcase>\n", head, words);
+      return formatted("{}>\n      <skipped message=\"{}\"/>\n    </testcase>\n", head, words);
     case Verdict::passed: break;
   }
-  return fmt::format("{}>\n      <system-out>{}: {}</system-out>\n    </testcase>\n", head,
-                     escaped(criterion.name), words);
+  return formatted("{}>\n      <system-out>{}: {}</system-out>\n    </testcase>\n", head,
+                   escaped(criterion.name), words);
 }
 
 std::string suite_xml(const TestResult& result) {
-  auto out = fmt::format(
+  auto out = formatted(
       "  <testsuite name=\"{} node {}\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" "
       "time=\"{:.3f}\">\n",
       escaped(result.test), result.node, result.criteria.size(), count(result, Verdict::failed),
@@ -53,7 +53,7 @@ std::string junit_xml(const std::vector<TestResult>& results) {
     seconds += result.seconds;
     suites += suite_xml(result);
   }
-  return fmt::format(
+  return formatted(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"servoctl\" tests=\"{}\" "
       "failures=\"{}\" errors=\"0\" time=\"{:.3f}\">\n{}</testsuites>\n",
       tests, failures, seconds, suites);

@@ -1,11 +1,11 @@
 #include "report/po.hpp"
 
-#include <fmt/format.h>
 #include <cstdint>
 #include <optional>
 #include <unordered_set>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::report {
@@ -96,7 +96,7 @@ class PoReader {
     part_ = Part::none;
     if (!entry_.id.empty()) {
       if (!known_.insert(entry_.id).second)
-        return wrong(fmt::format("the msgid of line {} stands twice", entry_.line));
+        return wrong(formatted("the msgid of line {} stands twice", entry_.line));
       out_.push_back(std::move(entry_));
     }
     entry_ = {};

@@ -1,8 +1,8 @@
 #include "report/sheets.hpp"
 
-#include <fmt/format.h>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "report/catalogue.hpp"
@@ -22,7 +22,7 @@ std::string css_string(std::string_view text, std::size_t columns) {
     const auto byte = static_cast<unsigned char>(c);
     const bool plain = byte >= 0x80 || c == ' ' || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
                        (c >= 'A' && c <= 'Z');
-    out += plain ? std::string(1, c) : fmt::format("\\{:06X} ", byte);
+    out += plain ? std::string(1, c) : formatted("\\{:06X} ", byte);
   }
   return '"' + out + '"';
 }
@@ -30,7 +30,7 @@ std::string css_string(std::string_view text, std::size_t columns) {
 }  // namespace
 
 std::string sheet_rules(const Page& page) {
-  auto out = fmt::format(
+  auto out = formatted(
       "@page {{ size: A4; margin: 18mm 14mm 18mm; font: 8pt sans-serif; color: #444;\n"
       "  @top-left {{ content: {}; text-align: left; white-space: nowrap; }}\n"
       "  @bottom-left {{ content: {}; text-align: left; white-space: nowrap; }}\n"
@@ -41,7 +41,7 @@ std::string sheet_rules(const Page& page) {
   for (const auto& section : page.sections)
     if (section.new_sheet) {
       ++sheet;
-      out += fmt::format(
+      out += formatted(
           "@page sheet{0} {{ @top-right {{ content: {1}; text-align: right; white-space: nowrap; }} }}\n"
           ".sheet{0} {{ page: sheet{0}; break-before: page; }}\n",
           sheet, css_string(section.title, kHeadColumns));
@@ -52,12 +52,12 @@ std::string sheet_rules(const Page& page) {
 std::string signature_lines(const Page& page) {
   if (page.signatures.empty()) return {};
   const auto say = [&](std::string_view english) { return page.chinese ? chinese_word(english) : english; };
-  auto out = fmt::format(
+  auto out = formatted(
       "<div class=\"together\">\n<h2>{}</h2>\n<table class=\"signatures\">\n<thead><tr><th></th>"
       "<th>{}</th><th>{}</th><th>{}</th></tr></thead>\n<tbody>\n",
       say("Signatures"), say("name in print"), say("date"), say("signature"));
   for (const auto& who : page.signatures)
-    out += fmt::format("<tr><td>{}</td><td></td><td></td><td></td></tr>\n", escaped(who));
+    out += formatted("<tr><td>{}</td><td></td><td></td><td></td></tr>\n", escaped(who));
   return out + "</tbody></table>\n</div>\n";
 }
 

@@ -1,10 +1,10 @@
 #include "report/svg.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "report/axis.hpp"
 #include "report/chinese_marks.hpp"
@@ -53,7 +53,7 @@ class Thinned {
     // A single sample is a line of no length: its round ends are a dot.
     if (points_.size() == 1) points_.push_back(points_.front());
     std::string out;
-    for (const auto& point : points_) append(out, fmt::format("{:.1f},{:.1f}", point.x, point.y), " ");
+    for (const auto& point : points_) append(out, formatted("{:.1f},{:.1f}", point.x, point.y), " ");
     points_.clear();
     return out;
   }
@@ -82,7 +82,7 @@ std::string line_of(const Series& series, const Extent& time, const Extent& exte
   Thinned run;
   const auto end_run = [&] {
     const auto points = run.take();
-    if (!points.empty()) out += fmt::format("<polyline points=\"{}\"/>\n", points);
+    if (!points.empty()) out += formatted("<polyline points=\"{}\"/>\n", points);
   };
   for (std::size_t i = 0; i < std::min(series.seconds.size(), series.values.size()); ++i) {
     if (!is_drawable(series.seconds[i]) || !is_drawable(series.values[i])) {
@@ -97,22 +97,21 @@ std::string line_of(const Series& series, const Extent& time, const Extent& exte
 }
 
 std::string rule(double x1, double y1, double x2, double y2, std::string_view colour) {
-  return fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}"/>)"
-                     "\n",
-                     x1, y1, x2, y2, colour);
+  return formatted(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}"/>)"
+                   "\n",
+                   x1, y1, x2, y2, colour);
 }
 
 std::string label(double x, double y, std::string_view anchor, const std::string& text) {
-  return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>)"
-                     "\n",
-                     x, y, anchor, escaped(text));
+  return formatted(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="{}">{}</text>)"
+                   "\n",
+                   x, y, anchor, escaped(text));
 }
 
 std::string panel(const Series& series, const Extent& time, double top, std::string_view no_samples) {
   const auto extent = extent_of(series.values);
   if (!extent)
-    return label(kLeft, top + 14, "start",
-                 chinese_marks(fmt::format("{}: {}", title_of(series), no_samples)));
+    return label(kLeft, top + 14, "start", chinese_marks(formatted("{}: {}", title_of(series), no_samples)));
   const auto axis = axis_of(*extent, kMostTicks);
   std::string out = label(kLeft, top + 14, "start", title_of(series));
   top += kTitle;
@@ -160,7 +159,7 @@ std::string svg_plot(std::span<const Series> series, std::string_view no_samples
   }
   top -= kPlotGap;
   drawing += time_axis(time, top);
-  return fmt::format(
+  return formatted(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" "
       "role=\"img\" aria-label=\"{2}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#000\">\n<rect "
       "width=\"{0}\" height=\"{1}\" fill=\"#fff\"/>\n{3}</svg>\n",

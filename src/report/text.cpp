@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
@@ -27,11 +27,11 @@ std::string line_text(const Value& value) {
   return std::visit(Overloaded{
                         [](std::monostate) { return std::string("-"); },
                         [](bool b) { return std::string(b ? "yes" : "no"); },
-                        [](std::int64_t i) { return fmt::format("{}", i); },
-                        [](std::uint64_t u) { return fmt::format("{}", u); },
+                        [](std::int64_t i) { return formatted("{}", i); },
+                        [](std::uint64_t u) { return formatted("{}", u); },
                         [](double d) { return plain_number(d, 12); },
                         [](const std::string& s) { return s; },
-                        [](const Hex& h) { return fmt::format("0x{:0{}X}", h.value, h.digits); },
+                        [](const Hex& h) { return formatted("0x{:0{}X}", h.value, h.digits); },
                         [](const List& l) {
                           std::string out;
                           for (const auto& v : l) append(out, line_text(v));
@@ -53,8 +53,7 @@ std::string line_text(const Value& value) {
 namespace {
 
 bool has_own_lines(const Value& value) {
-  return value.table() != nullptr || std::holds_alternative<Record>(value.data()) ||
-         value.plot() != nullptr;
+  return value.table() != nullptr || std::holds_alternative<Record>(value.data()) || value.plot() != nullptr;
 }
 
 std::string record_text(const Record& record, std::size_t width) {

@@ -1,20 +1,19 @@
 #pragma once
 
-#include <fmt/format.h>
-
 #include <string>
 #include <string_view>
 
+#include "base/format.hpp"
 #include "report/catalogue.hpp"
 
 namespace servoctl::report {
 
-/// fmt::format(english, …) in the language of who reads. It costs little more than that, so that each of many
+/// formatted(english, …) in the language of who reads. It costs little more than that, so that each of many
 /// frames may be told; the format has to stand in the catalogue as it is here, with placeholders `{}` alone.
 template <typename... T>
 std::string told(bool chinese, std::string_view english, const T&... values) {
   const auto format = chinese ? chinese_word(english) : english;
-  return fmt::vformat(fmt::string_view(format.data(), format.size()), fmt::make_format_args(values...));
+  return formatted_of(fmt::string_view(format.data(), format.size()), fmt::make_format_args(values...));
 }
 
 }  // namespace servoctl::report

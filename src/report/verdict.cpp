@@ -1,8 +1,8 @@
 #include "report/verdict.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "report/line.hpp"
 
@@ -61,9 +61,9 @@ std::string in_words(const Criterion& criterion) {
   const auto figure = criterion.figure.is_null() ? std::string() : line_text(criterion.figure) + unit;
   const auto limit = line_text(criterion.limit) + unit;
   auto out = figure;
-  if (criterion.relation == "<=") out = fmt::format("{}, at most {}", figure, limit);
-  if (criterion.relation == ">=") out = fmt::format("{}, at least {}", figure, limit);
-  if (criterion.relation == "=") out = fmt::format("{}, wanted: {}", figure, limit);
+  if (criterion.relation == "<=") out = formatted("{}, at most {}", figure, limit);
+  if (criterion.relation == ">=") out = formatted("{}, at least {}", figure, limit);
+  if (criterion.relation == "=") out = formatted("{}, wanted: {}", figure, limit);
   if (!criterion.note.empty()) append(out, criterion.note, "; ");
   return out;
 }

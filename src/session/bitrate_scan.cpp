@@ -1,8 +1,8 @@
 #include "session/bitrate_scan.hpp"
 
-#include <fmt/format.h>
 #include <cerrno>
 
+#include "base/format.hpp"
 #include "can/slcan_opening.hpp"
 #include "drive/bitrate.hpp"
 #include "session/scan.hpp"
@@ -61,13 +61,13 @@ Result<void> hold_silence(can::LinkControl& link, Duration time, const std::func
   const auto at = state->bitrate ? drive::bitrate_text(*state->bitrate) : "its bitrate";
   if (heard->frames > 0)
     return fail(Errc::refused,
-                fmt::format("{} is in use: {} frame{} heard at {}", link.name(), heard->frames,
-                            heard->frames == 1 ? " was" : "s were", at),
+                formatted("{} is in use: {} frame{} heard at {}", link.name(), heard->frames,
+                          heard->frames == 1 ? " was" : "s were", at),
                 "another bitrate would disturb whoever talks there; `scan` asks at this one");
   return fail(
-      Errc::refused, fmt::format("{} is in use: {} errors were heard at {}", link.name(), heard->errors, at),
-      fmt::format("somebody talks at another bitrate: `bus detect {}` finds it without sending anything",
-                  link.name()));
+      Errc::refused, formatted("{} is in use: {} errors were heard at {}", link.name(), heard->errors, at),
+      formatted("somebody talks at another bitrate: `bus detect {}` finds it without sending anything",
+                link.name()));
 }
 
 Result<BitrateScan> scan_bitrates(Session& session, can::LinkControl& link,

@@ -1,10 +1,10 @@
 #include "session/bitrate_search.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <cerrno>
 
+#include "base/format.hpp"
 #include "can/controller_report.hpp"
 #include "can/error_frame.hpp"
 
@@ -147,7 +147,7 @@ Result<Search> search_bitrate(can::LinkControl& link, const SearchOptions& optio
   const auto back = keeper.put_back();
   if (!back && found) {
     auto error = back.error();
-    error.message = fmt::format("{} could not be put back to what it was: {}", link.name(), error.message);
+    error.message = formatted("{} could not be put back to what it was: {}", link.name(), error.message);
     return fail(std::move(error));
   }
   return found;

@@ -1,8 +1,8 @@
 #include "session/bus_return.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "session/can_network.hpp"
 #include "session/identify.hpp"
@@ -67,7 +67,7 @@ Result<void> BusReturn::hold(std::span<const Identity> before) {
     if (!change.empty())
       return fail(drive_error(
           Errc::refused, one.node,
-          fmt::format("another drive is there than before the bus was lost: {} is another", change),
+          formatted("another drive is there than before the bus was lost: {} is another", change),
           "`scan --long` shows who is there; then type the line anew, with the family of this drive"));
   }
   return {};
@@ -76,16 +76,16 @@ Result<void> BusReturn::hold(std::span<const Identity> before) {
 Result<void> BusReturn::wait(const Error& lost, TimePoint end) {
   const auto since = session_->now();
   if (since < flickered_ + kAgain || sends_regularly() || !session_->energised().empty()) return fail(lost);
-  tell_(false, fmt::format("{}: waiting until it can be used again", lost.message));
+  tell_(false, formatted("{}: waiting until it can be used again", lost.message));
   const auto before = known();
   // One that can be opened at once was perhaps never away: its queue is full, or it fails otherwise.
   const bool at_once = session_->network().recover(since).has_value();
   if (!at_once && !reopen(end)) return fail(lost);
   session_->note_away();
   const auto seconds = std::chrono::duration<double>(session_->now() - since).count();
-  tell_(true,
-        at_once ? fmt::format("{} was opened anew at once", session_->url())
-                : fmt::format("{} can be used again after {} s", session_->url(), plain_number(seconds, 2)));
+  tell_(true, at_once
+                  ? formatted("{} was opened anew at once", session_->url())
+                  : formatted("{} can be used again after {} s", session_->url(), plain_number(seconds, 2)));
   const auto held = hold(before);
   if (at_once) flickered_ = session_->now();
   // Lost again: whoever reads next meets it.

@@ -1,19 +1,17 @@
 #include "session/bus_setup.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
 
+#include "base/format.hpp"
 #include "drive/bitrate.hpp"
 
 namespace servoctl::session {
 namespace {
 
-std::string sample_point_text(std::uint16_t thousandths) {
-  return fmt::format("{:.1f} %", thousandths / 10.0);
-}
+std::string sample_point_text(std::uint16_t thousandths) { return formatted("{:.1f} %", thousandths / 10.0); }
 
 /// Half a quantum of the bit, in which the controller has to place it; at the least what rounding costs.
 int tolerance_of(const can::LinkState& now) {
@@ -27,15 +25,15 @@ bool is_close(const can::LinkState& now, std::uint16_t wanted) {
 std::vector<std::string> differences(const can::LinkState& now, const BusWish& wish) {
   std::vector<std::string> out;
   if (wish.bitrate && now.bitrate != wish.bitrate)
-    out.push_back(fmt::format("{} instead of {}",
-                              now.bitrate ? drive::bitrate_text(*now.bitrate) : "no bitrate",
-                              drive::bitrate_text(*wish.bitrate)));
+    out.push_back(formatted("{} instead of {}",
+                            now.bitrate ? drive::bitrate_text(*now.bitrate) : "no bitrate",
+                            drive::bitrate_text(*wish.bitrate)));
   if (wish.sample_point && !is_close(now, *wish.sample_point))
-    out.push_back(fmt::format("sample point {} instead of {}",
-                              now.sample_point ? sample_point_text(*now.sample_point) : "not known",
-                              sample_point_text(*wish.sample_point)));
+    out.push_back(formatted("sample point {} instead of {}",
+                            now.sample_point ? sample_point_text(*now.sample_point) : "not known",
+                            sample_point_text(*wish.sample_point)));
   if (wish.restart_ms && now.restart_ms != wish.restart_ms)
-    out.push_back(fmt::format("restart-ms {} instead of {}", now.restart_ms.value_or(0), *wish.restart_ms));
+    out.push_back(formatted("restart-ms {} instead of {}", now.restart_ms.value_or(0), *wish.restart_ms));
   if (now.listen_only) out.push_back("listen-only, so that it acknowledges nothing");
   return out;
 }
@@ -46,11 +44,10 @@ Result<void> check_wish(const std::string& name, const can::LinkState& now, cons
     return fail(can::link_refusal(name, {.bitrate = wish.bitrate.value_or(0)}, now, EOPNOTSUPP, {}));
   if (has_controller && !now.bitrate && !wish.bitrate)
     return fail(
-        Errc::usage, fmt::format("{} has no bitrate yet", name),
-        fmt::format(
-            "`bus up {0} --bitrate 500k`, with the bitrate of the drives; where nobody knows it, `bus "
-            "detect {0}` listens for it",
-            name));
+        Errc::usage, formatted("{} has no bitrate yet", name),
+        formatted("`bus up {0} --bitrate 500k`, with the bitrate of the drives; where nobody knows it, `bus "
+                  "detect {0}` listens for it",
+                  name));
   return {};
 }
 
@@ -82,7 +79,7 @@ Result<void> check_bitrate(can::LinkControl& link, const can::LinkChange& step) 
   const double wanted = step.bitrate.value_or(0);
   if (!now->bitrate || std::abs(*now->bitrate - wanted) <= wanted * kMostMissed) return {};
   auto error = can::link_refusal(link.name(), step, *now, EDOM, {});
-  error.hint = fmt::format("the nearest that it has is {} bit/s", *now->bitrate);
+  error.hint = formatted("the nearest that it has is {} bit/s", *now->bitrate);
   return fail(std::move(error));
 }
 
@@ -104,7 +101,7 @@ Result<BusPlan> plan_bus_up(const std::string& name, const can::LinkState& now, 
   }
   out.differs = differences(now, wish);
   const bool dead = takes_no_part(now);
-  if (dead) out.differs.push_back(fmt::format("{} is {}", name, can::name(*now.health)));
+  if (dead) out.differs.push_back(formatted("{} is {}", name, can::name(*now.health)));
   if (!out.differs.empty()) {
     out.stops_bus = !dead;
     out.steps.push_back({.up = false});
@@ -127,9 +124,9 @@ Result<void> set_up(can::LinkControl& link, const can::LinkState& before, const 
     const auto back = keeper.put_back();
     auto error = done.error();
     if (!back && was_down)
-      error.message += fmt::format("; {} could not be put back either, and is down", link.name());
+      error.message += formatted("; {} could not be put back either, and is down", link.name());
     else if (was_down)
-      error.message += fmt::format("; {} is up again as before, at {}", link.name(), settings_text(before));
+      error.message += formatted("; {} is up again as before, at {}", link.name(), settings_text(before));
     return fail(std::move(error));
   }
   keeper.keep();
@@ -139,11 +136,11 @@ Result<void> set_up(can::LinkControl& link, const can::LinkState& before, const 
 std::vector<std::string> rounded(const can::LinkState& now, const BusWish& wish) {
   std::vector<std::string> out;
   if (wish.bitrate && now.bitrate && *now.bitrate != *wish.bitrate)
-    out.push_back(fmt::format("the controller cannot make {}: it has {} bit/s",
-                              drive::bitrate_text(*wish.bitrate), *now.bitrate));
+    out.push_back(formatted("the controller cannot make {}: it has {} bit/s",
+                            drive::bitrate_text(*wish.bitrate), *now.bitrate));
   if (wish.sample_point && now.sample_point && std::abs(int{*now.sample_point} - int{*wish.sample_point}) > 1)
-    out.push_back(fmt::format("the controller cannot have its sample point at {}: it is at {}",
-                              sample_point_text(*wish.sample_point), sample_point_text(*now.sample_point)));
+    out.push_back(formatted("the controller cannot have its sample point at {}: it is at {}",
+                            sample_point_text(*wish.sample_point), sample_point_text(*now.sample_point)));
   return out;
 }
 

@@ -1,8 +1,8 @@
 #include "session/can_network.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/nmt.hpp"
 #include "session/can_object_channel.hpp"
@@ -144,10 +144,9 @@ Result<void> CanNetwork::on_report(can::ControllerReport report) {
     return fail(
         Errc::bus, url_ + ": " + std::string(can::text(report)),
         name.find(':') == std::string::npos
-            ? fmt::format(
-                  "check bitrate, wiring and termination; then `bus up {}` takes it down and up again "
-                  "(with `--restart-ms 100` it comes back by itself)",
-                  name)
+            ? formatted("check bitrate, wiring and termination; then `bus up {}` takes it down and up again "
+                        "(with `--restart-ms 100` it comes back by itself)",
+                        name)
             : "check bitrate, wiring and termination; the next command opens the adapter anew");
   }
   if (report != last_report_) reports_.push_back(report);
@@ -165,12 +164,12 @@ std::vector<std::string> CanNetwork::take_notices() {
 std::string CanNetwork::silence_hint(std::uint8_t node) const {
   const auto start = state_command(node, NodeState::pre_operational);
   if (records_.state(node) == NodeState::stopped)
-    return fmt::format("node {} is stopped (NMT, by its heartbeat) and cannot answer SDO: `{}`", node, start);
+    return formatted("node {} is stopped (NMT, by its heartbeat) and cannot answer SDO: `{}`", node, start);
   if (wire_errors_.damage() >= kNoAccident && now() < wire_error_at_ + kMeanwhile)
-    return fmt::format(
+    return formatted(
         "there were errors on the wire ({}): another bitrate, wiring or termination? `doctor {}` tells them apart",
         wire_errors_.text(), canonical_url(url_));
-  return fmt::format(
+  return formatted(
       "is node {} powered, connected, at this bitrate and node-ID? `scan` shows which nodes answer; a "
       "stopped node does not: `{}`",
       node, start);
@@ -186,7 +185,7 @@ std::string CanNetwork::state_command(std::uint8_t node, NodeState state) const 
   const auto* word = state == NodeState::operational ? "start"
                      : state == NodeState::stopped   ? "stop"
                                                      : "preop";
-  return fmt::format("nmt {} -n {}", word, node);
+  return formatted("nmt {} -n {}", word, node);
 }
 
 std::unique_ptr<ObjectChannel> CanNetwork::object_channel(std::uint8_t node, Duration timeout) {
@@ -218,14 +217,14 @@ Result<void> CanNetwork::send(const can::Frame& frame) {
   const auto sent = bus_->send(frame);
   if (ordered_ && sent)
     if (const auto order = canopen::parse_nmt(frame))
-      ordered_(order->node, fmt::format("NMT \"{}\"", canopen::name(order->command)));
+      ordered_(order->node, formatted("NMT \"{}\"", canopen::name(order->command)));
   return sent;
 }
 
 Result<void> CanNetwork::request_state(std::uint8_t node, NodeState state) {
   const auto command = nmt_command(state);
   if (!command)
-    return fail(Errc::usage, fmt::format("no NMT command leads to state {}", name(state)),
+    return fail(Errc::usage, formatted("no NMT command leads to state {}", name(state)),
                 "use operational, pre-operational or stopped");
   return send(canopen::nmt_frame(*command, node));
 }

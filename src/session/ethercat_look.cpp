@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "ethercat/request_sequence.hpp"
 #include "ethercat/sii_reader.hpp"
 #include "session/ethercat_network.hpp"
@@ -78,12 +79,12 @@ Result<std::vector<std::uint8_t>> EtherCatNetwork::nodes_with_objects() {
   }
   if (out.empty())
     return fail(Errc::negative,
-                fmt::format("{}: by their SII none of the {} slaves has CoE", url_, seen->size()),
+                formatted("{}: by their SII none of the {} slaves has CoE", url_, seen->size()),
                 "`scan` shows what they are; a node named with -n is asked all the same");
   if (!without.empty())
-    notices_.push_back(fmt::format("-n all leaves out node{} {}: no CoE, by {} SII",
-                                   without.size() == 1 ? "" : "s", fmt::join(without, ", "),
-                                   without.size() == 1 ? "its" : "their"));
+    notices_.push_back(formatted("-n all leaves out node{} {}: no CoE, by {} SII",
+                                 without.size() == 1 ? "" : "s", fmt::join(without, ", "),
+                                 without.size() == 1 ? "its" : "their"));
   return out;
 }
 

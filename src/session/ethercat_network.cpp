@@ -1,9 +1,9 @@
 #include "session/ethercat_network.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "ethercat/request_sequence.hpp"
 #include "ethercat/sm_watchdog.hpp"
 #include "session/ethercat_exchange.hpp"
@@ -157,7 +157,7 @@ std::optional<NodeEvent> EtherCatNetwork::take_event() {
 Result<void> EtherCatNetwork::request_state(std::uint8_t number, NodeState state) {
   const auto target = al_state(state);
   if (!target)
-    return fail(drive_error(Errc::usage, number, fmt::format("EtherCAT has no state {}", name(state)),
+    return fail(drive_error(Errc::usage, number, formatted("EtherCAT has no state {}", name(state)),
                             "use init, preop, safeop or op"));
   auto& node = of(number);
   if (*target != AlState::op) node.kept = false;
@@ -236,8 +236,8 @@ std::vector<std::string> EtherCatNetwork::take_notices() {
 }
 
 std::string EtherCatNetwork::silence_hint(std::uint8_t node) const {
-  if (!wire_.port().has_link()) return fmt::format("{} has no link: is the cable plugged in?", url_);
-  return fmt::format(
+  if (!wire_.port().has_link()) return formatted("{} has no link: is the cable plugged in?", url_);
+  return formatted(
       "is node {} powered, and are the cables on the way to it plugged in? `scan` shows which "
       "slaves answer",
       node);
@@ -250,7 +250,7 @@ std::string EtherCatNetwork::state_command(std::uint8_t node, NodeState state) c
                          : target == AlState::safeop ? 2
                          : target == AlState::op     ? 3
                                                      : 1;
-  return fmt::format("state {} -n {}", kWords[at], node);
+  return formatted("state {} -n {}", kWords[at], node);
 }
 
 const ethercat::ProcessImage* EtherCatNetwork::image_of(std::uint8_t node) const {

@@ -1,6 +1,6 @@
 #include "session/ethercat_object_channel.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -14,7 +14,7 @@ constexpr unsigned kMostMissing = 10;
 std::string cycle_trouble(const ethercat::ProcessImage::Counts& counts) {
   if (counts.missing == 0) return "no cycle was made in time";
   if (counts.expected == 0) return "frames do not come back";
-  return fmt::format("working counter {} instead of {}", counts.counter, counts.expected);
+  return formatted("working counter {} instead of {}", counts.counter, counts.expected);
 }
 
 EtherCatObjectChannel::~EtherCatObjectChannel() {
@@ -124,7 +124,7 @@ void EtherCatObjectChannel::serve_image(TimePoint now) {
   if (now < until_ && counts.missing < kMostMissing) return;
   const auto* what = way_ == Way::output ? "whether it was written is not known" : "its inputs did not come";
   finish(fail(drive_error(Errc::timeout, node_->number, object_,
-                          fmt::format("{}: {}", what, cycle_trouble(counts)),
+                          formatted("{}: {}", what, cycle_trouble(counts)),
                           network_->silence_hint(node_->number))));
 }
 

@@ -1,8 +1,8 @@
 // What a network hears of its slaves while it waits for something else: their states, whether they are there.
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "ethercat/registers.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/ethercat_object_channel.hpp"
@@ -64,7 +64,7 @@ void EtherCatNetwork::on_count(const ethercat::Answer& answer) {
   watching_.lost = answer.lost ? watching_.lost + 1 : 0;
   if (answer.lost || !numbered_ || changed_ || answer.working_counter <= count_) return;
   changed_ = true;
-  notices_.push_back(fmt::format(
+  notices_.push_back(formatted(
       "{}: {} slaves are on the ring now, {} when they were numbered; a node is a position, and `scan` numbers "
       "them anew",
       url_, answer.working_counter, count_));
@@ -73,8 +73,7 @@ void EtherCatNetwork::on_count(const ethercat::Answer& answer) {
 void EtherCatNetwork::on_state(EtherCatNode& node, const ethercat::Answer& answer, TimePoint now) {
   if (answer.lost || answer.working_counter == 0) return on_missing(node, now);
   if (answer.working_counter > 1)
-    tell(node.number, NodeEvent::Doubled{fmt::format("station address {:04X}h", station_of(node.number))},
-         now);
+    tell(node.number, NodeEvent::Doubled{formatted("station address {:04X}h", station_of(node.number))}, now);
   node.missed = 0;
   const auto al = ethercat::parse_al_status(answer.data);
   if (std::exchange(node.gone, false)) tell(node.number, NodeEvent::Back{node_state(al.state)}, now);
@@ -130,7 +129,7 @@ void EtherCatNetwork::end_cycles(EtherCatNode& node) {
   const auto& rhythm = node.image->rhythm();
   const auto late = std::chrono::duration_cast<std::chrono::milliseconds>(rhythm.latest).count();
   if (counts.lost + counts.short_outputs + counts.short_inputs + rhythm.skipped > 0)
-    notices_.push_back(fmt::format(
+    notices_.push_back(formatted(
         "node {}: {} cycles of process data: {} frames lost, {} outputs not taken, {} inputs not given, {} cycles "
         "left out because servoctl was late (by {} ms at most)",
         node.number, counts.cycles, counts.lost, counts.short_outputs, counts.short_inputs, rhythm.skipped,

@@ -1,8 +1,8 @@
 #include "session/family_check.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
@@ -34,14 +34,14 @@ Says ask(const Identity& identity, const IdentityMark& mark) {
 }
 
 std::string drive_says(const Identity& identity, const IdentityMark& mark) {
-  if (!mark.text.empty()) return fmt::format("\"{}\"", trim(identity.device_name));
-  return fmt::format("0x{:08X}", number_of(identity, mark.object).value_or(0));
+  if (!mark.text.empty()) return formatted("\"{}\"", trim(identity.device_name));
+  return formatted("0x{:08X}", number_of(identity, mark.object).value_or(0));
 }
 
 std::string family_says(const IdentityMark& mark) {
-  if (!mark.text.empty()) return fmt::format("\"{}\"", mark.text);
-  const auto value = fmt::format("0x{:08X}", mark.value);
-  return mark.mask == ~std::uint64_t{0} ? value : fmt::format("{} in the bits 0x{:08X}", value, mark.mask);
+  if (!mark.text.empty()) return formatted("\"{}\"", mark.text);
+  const auto value = formatted("0x{:08X}", mark.value);
+  return mark.mask == ~std::uint64_t{0} ? value : formatted("{} in the bits 0x{:08X}", value, mark.mask);
 }
 
 /// Whether the family's own objects are there: all of them, none, or not known.
@@ -75,7 +75,7 @@ const IdentityMark* violated(const Identity& identity, const drive::Rules& rules
 std::string held(const Identity& identity, const drive::Rules& rules) {
   std::string out;
   for (const auto& mark : rules.identity)
-    append(out, fmt::format("{} = {}", to_string(mark.object), drive_says(identity, mark)));
+    append(out, formatted("{} = {}", to_string(mark.object), drive_says(identity, mark)));
   return out;
 }
 
@@ -83,11 +83,11 @@ std::string held(const Identity& identity, const drive::Rules& rules) {
 std::string why_unproven(const Identity& identity, const drive::Profile& profile, const IdentityMark* soft) {
   const auto& rules = profile.rules;
   if (soft != nullptr)
-    return fmt::format("its {} is {}, but {} has {}", to_string(soft->object), drive_says(identity, *soft),
-                       profile.family, family_says(*soft));
-  if (rules.identity.empty()) return fmt::format("{} has no known identity", profile.family);
-  if (fits(identity, rules)) return fmt::format("{} matches, but not uniquely", held(identity, rules));
-  return fmt::format("it does not report all that {} would", profile.family);
+    return formatted("its {} is {}, but {} has {}", to_string(soft->object), drive_says(identity, *soft),
+                     profile.family, family_says(*soft));
+  if (rules.identity.empty()) return formatted("{} has no known identity", profile.family);
+  if (fits(identity, rules)) return formatted("{} matches, but not uniquely", held(identity, rules));
+  return formatted("it does not report all that {} would", profile.family);
 }
 
 /// The other family that the drive tells it is, where the one that was named says nothing against it.
@@ -103,7 +103,7 @@ void judge_by_others(const Identity& identity, const drive::Profile& profile,
     if (!is_telling(rules) || !may_be(identity, rules)) continue;
     verdict.kind = FamilyVerdict::Kind::contradicted;
     verdict.object = rules.identity.front().object;
-    verdict.why = fmt::format("its identity is that of {} ({})", family.name, held(identity, rules));
+    verdict.why = formatted("its identity is that of {} ({})", family.name, held(identity, rules));
     return;
   }
 }
@@ -145,15 +145,15 @@ FamilyVerdict judge_family(const Identity& identity, const drive::Profile& profi
   if (const auto* mark = violated(identity, rules, false)) {
     out.kind = FamilyVerdict::Kind::contradicted;
     out.object = mark->object;
-    out.why = fmt::format("its {} is {}, but {} has {}", to_string(mark->object), drive_says(identity, *mark),
-                          profile.family, family_says(*mark));
+    out.why = formatted("its {} is {}, but {} has {}", to_string(mark->object), drive_says(identity, *mark),
+                        profile.family, family_says(*mark));
     return out;
   }
   if (own_objects(identity, rules) == Says::no) {
     out.kind = FamilyVerdict::Kind::contradicted;
     out.object = rules.identity_looks.front();
     out.why =
-        fmt::format("it refuses to read {}, which every {} has", names(rules.identity_looks), profile.family);
+        formatted("it refuses to read {}, which every {} has", names(rules.identity_looks), profile.family);
     return out;
   }
   if (identity.by_registers) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/signal_wait.hpp"
 #include "session/gateway_object_channel.hpp"
@@ -64,8 +65,8 @@ GatewayNetwork::~GatewayNetwork() = default;
 
 std::string GatewayNetwork::timeout_line() const {
   const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
-  const auto line = fmt::format("set sdo_timeout {}", std::clamp<std::int64_t>(ms, 1, 65'535));
-  return names_network_ ? fmt::format("{} {}", address_.network, line) : line;
+  const auto line = formatted("set sdo_timeout {}", std::clamp<std::int64_t>(ms, 1, 65'535));
+  return names_network_ ? formatted("{} {}", address_.network, line) : line;
 }
 
 /// What answers this is a gateway, whatever the answer. CANopenNode has the timeout for all networks and
@@ -79,7 +80,7 @@ Result<void> GatewayNetwork::introduce() {
     answer = ask(timeout_line(), kAnswerPatience);
   }
   if (!answer && answer.error().code == Errc::timeout)
-    return fail(Errc::bus, fmt::format("{} does not answer as a gateway of CiA 309-3", url_),
+    return fail(Errc::bus, formatted("{} does not answer as a gateway of CiA 309-3", url_),
                 "does it serve another client? canopend serves one at a time");
   if (!answer) return fail(answer.error());
   takes_timeout_ = answer->kind == gateway::Answer::Kind::ok;
@@ -113,13 +114,13 @@ void GatewayNetwork::begin_anew() {
 }
 
 Error GatewayNetwork::gone() const {
-  return make_error(Errc::bus, fmt::format("the connection to {} is lost", url_),
+  return make_error(Errc::bus, formatted("the connection to {} is lost", url_),
                     "the next line connects anew");
 }
 
 Error GatewayNetwork::silent() const {
   return make_error(
-      Errc::bus, fmt::format("{} does not answer any more", url_),
+      Errc::bus, formatted("{} does not answer any more", url_),
       "check cable and network, and whether it hangs or serves another client (canopend serves one at a "
       "time); the next line connects anew");
 }
@@ -174,7 +175,7 @@ Result<bool> GatewayNetwork::step(TimePoint deadline) {
   if (outcome) hand_over(*outcome);
   if (!received && !outcome) return fail(lose(received.error()).error());
   if (client_.is_broken())
-    return fail(lose(make_error(Errc::bus, fmt::format("{}: what came is no answer of CiA 309-3", url_),
+    return fail(lose(make_error(Errc::bus, formatted("{}: what came is no answer of CiA 309-3", url_),
                                 "is another service at this port?"))
                     .error());
   return outcome || !bytes.empty();
@@ -192,7 +193,7 @@ Result<gateway::Answer> GatewayNetwork::ask(std::string_view request, Duration p
     if (is_cancelled) return fail(Errc::interrupted, "interrupted");
     if (const auto stepped = step(client_.deadline()); !stepped) return fail(stepped.error());
   }
-  if (!own_) return fail(Errc::timeout, fmt::format("{} does not answer", url_));
+  if (!own_) return fail(Errc::timeout, formatted("{} does not answer", url_));
   return *std::exchange(own_, std::nullopt);
 }
 
@@ -212,7 +213,7 @@ Result<void> GatewayNetwork::recover(TimePoint deadline) {
 }
 
 std::string GatewayNetwork::command_line(std::uint8_t node, canopen::NmtCommand command) const {
-  return fmt::format("{} {} {}", address_.network, node, word_of(command));
+  return formatted("{} {} {}", address_.network, node, word_of(command));
 }
 
 Result<void> GatewayNetwork::command(std::uint8_t node, canopen::NmtCommand command) {
@@ -220,12 +221,12 @@ Result<void> GatewayNetwork::command(std::uint8_t node, canopen::NmtCommand comm
   const auto answer = ask(line, kAnswerPatience);
   if (!answer) return fail(answer.error());
   if (answer->kind == gateway::Answer::Kind::ok) {
-    if (ordered_) ordered_(node, fmt::format("NMT \"{}\"", canopen::name(command)));
+    if (ordered_) ordered_(node, formatted("NMT \"{}\"", canopen::name(command)));
     return {};
   }
   return fail(Errc::refused,
-              fmt::format("the gateway answers '{}' to '{}': {} {}", answer->number, line,
-                          gateway::code_text(answer->number), printable(answer->text)),
+              formatted("the gateway answers '{}' to '{}': {} {}", answer->number, line,
+                        gateway::code_text(answer->number), printable(answer->text)),
               "one of servoctl only reads unless it was started with --allow write");
 }
 
@@ -260,7 +261,7 @@ std::string_view GatewayNetwork::why_no_power() const {
 }
 
 std::string GatewayNetwork::silence_hint(std::uint8_t node) const {
-  return fmt::format(
+  return formatted(
       "is node {} on the bus of the gateway, and its network number {}? Check power, cable and bitrate there",
       node, address_.network);
 }

@@ -1,9 +1,8 @@
 #include "session/gateway_object_channel.hpp"
 
-#include <fmt/format.h>
-
 #include "base/base64.hpp"
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "canopen/sdo_abort.hpp"
 
@@ -25,7 +24,7 @@ GatewayObjectChannel::~GatewayObjectChannel() { network_->leave(*this); }
 void GatewayObjectChannel::start_upload(ObjectAddress object, TimePoint, canopen::Transfer, std::size_t) {
   object_ = object;
   writes_ = false;
-  ask(fmt::format("{} {} r 0x{:04X} {} d", network_->address_.network, node_, object.index, object.sub));
+  ask(formatted("{} {} r 0x{:04X} {} d", network_->address_.network, node_, object.index, object.sub));
 }
 
 void GatewayObjectChannel::start_download(ObjectAddress object, Bytes data, TimePoint, canopen::Transfer) {
@@ -37,8 +36,8 @@ void GatewayObjectChannel::start_download(ObjectAddress object, Bytes data, Time
                                "nothing was sent"));
     return;
   }
-  ask(fmt::format("{} {} w 0x{:04X} {} d {}", network_->address_.network, node_, object.index, object.sub,
-                  to_base64(data)));
+  ask(formatted("{} {} w 0x{:04X} {} d {}", network_->address_.network, node_, object.index, object.sub,
+                to_base64(data)));
 }
 
 void GatewayObjectChannel::ask(std::string request) {
@@ -66,7 +65,7 @@ std::string told_beside(std::string_view text, std::string_view said) {
   if (text.ends_with('.')) text.remove_suffix(1);
   if (text.starts_with(said)) text.remove_prefix(said.size());
   if (text.starts_with(": ")) text.remove_prefix(2);
-  return text.empty() ? std::string() : fmt::format("the gateway says: {}", printable(text));
+  return text.empty() ? std::string() : formatted("the gateway says: {}", printable(text));
 }
 
 }  // namespace
@@ -76,24 +75,23 @@ Error GatewayObjectChannel::refusal(const gateway::Answer& answer) const {
     const auto said = canopen::sdo_abort_text(answer.number);
     const auto more = told_beside(answer.text, said);
     if (answer.number == canopen::sdo_abort::kTimeout)
-      return drive_error(Errc::timeout, node_, object_,
-                         fmt::format("no answer within {}", to_string(timeout_)), more);
+      return drive_error(Errc::timeout, node_, object_, formatted("no answer within {}", to_string(timeout_)),
+                         more);
     if (is_broken_transfer(answer.number))
       return drive_error(Errc::protocol, node_, object_,
-                         fmt::format("the transfer broke off: {} (abort 0x{:08X})", said, answer.number),
-                         more);
+                         formatted("the transfer broke off: {} (abort 0x{:08X})", said, answer.number), more);
     auto error = drive_error(
         Errc::sdo_abort, node_, object_,
-        fmt::format("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(answer.number), answer.number),
+        formatted("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(answer.number), answer.number),
         writes_ ? canopen::sdo_abort_hint(answer.number, object_) : canopen::sdo_abort_hint(answer.number));
     error.abort_code = answer.number;
     return error;
   }
   const auto meaning = gateway::code_text(answer.number);
   const bool says_more = answer.text.find(meaning) == std::string::npos;
-  const auto what = says_more ? fmt::format("the gateway answers {} ({}) {}", answer.number, meaning,
-                                            printable(answer.text))
-                              : fmt::format("the gateway answers {} ({})", answer.number, meaning);
+  const auto what =
+      says_more ? formatted("the gateway answers {} ({}) {}", answer.number, meaning, printable(answer.text))
+                : formatted("the gateway answers {} ({})", answer.number, meaning);
   switch (static_cast<gateway::Code>(answer.number)) {
     case gateway::Code::timeout: return drive_error(Errc::timeout, node_, object_, what);
     case gateway::Code::internal_state:
@@ -117,7 +115,7 @@ Result<Bytes> GatewayObjectChannel::result_of(const gateway::Client::Outcome& ou
   if (!writes_ && answer.kind == Kind::value)
     if (auto bytes = parse_base64(answer.text)) return std::move(*bytes);
   return fail(drive_error(Errc::protocol, node_, object_,
-                          fmt::format("the gateway answers '{}'", printable(answer.text.substr(0, 60))),
+                          formatted("the gateway answers '{}'", printable(answer.text.substr(0, 60))),
                           "is it one of CiA 309-3, in its ASCII form?"));
 }
 

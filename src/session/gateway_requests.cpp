@@ -1,6 +1,7 @@
 // What a gateway does with one line.
 #include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "canopen/nmt.hpp"
 #include "gateway/words.hpp"
 #include "session/can_network.hpp"
@@ -83,7 +84,7 @@ void GatewayServer::handle(Client& client, const gateway::LineReader::Line& line
   const bool changes = service == Service::write || is_command(service);
   if (line.too_long)
     client.out += error_line(sequence, Code::syntax,
-                             fmt::format("a line has {} bytes at most", gateway::LineReader::kLongest));
+                             formatted("a line has {} bytes at most", gateway::LineReader::kLongest));
   else if (!words)
     client.out += error_line(sequence, Code::syntax, "a quote stands alone");
   else if (!request.sequence)
@@ -109,9 +110,9 @@ void GatewayServer::answer(Client& client, std::uint32_t sequence, const Request
     out += set_default(client, sequence, request);
   } else if (service == Service::info && request.what() == "version") {
     // Vendor, product, revision and serial number: it has none. Class 1: no NMT master of its own.
-    out += gateway::value_line(sequence, fmt::format("0 0 0.0 0 1 3.0 {}", options_.version));
+    out += gateway::value_line(sequence, formatted("0 0 0.0 0 1 3.0 {}", options_.version));
   } else if (service == Service::help) {
-    out += fmt::format("[{}] {}", sequence, kHelp);
+    out += formatted("[{}] {}", sequence, kHelp);
   } else {
     out += error_line(sequence, Code::not_supported);
   }
@@ -120,7 +121,7 @@ void GatewayServer::answer(Client& client, std::uint32_t sequence, const Request
 void GatewayServer::refuse(Client& client, std::uint32_t sequence, const Request& request) {
   client.out += error_line(sequence, Code::internal_state, "this gateway only reads");
   if (++client.refused == 1)
-    tell(fmt::format("refused '{}' of a client: --allow write allows it", fmt::join(request.words, " ")));
+    tell(formatted("refused '{}' of a client: --allow write allows it", fmt::join(request.words, " ")));
 }
 
 std::string GatewayServer::begin_transfer(Client& client, std::uint32_t sequence, const Request& request) {
@@ -131,7 +132,7 @@ std::string GatewayServer::begin_transfer(Client& client, std::uint32_t sequence
   if (!object) return error_line(sequence, Code::syntax, object.error().message);
   const auto words = std::span(request.words).subspan(3);
   const auto type = words.empty() ? std::optional(gateway::ValueType{}) : gateway::parse_value_type(words[0]);
-  if (!type) return error_line(sequence, Code::syntax, fmt::format("'{}' is not a data type", words[0]));
+  if (!type) return error_line(sequence, Code::syntax, formatted("'{}' is not a data type", words[0]));
   if (reads ? words.size() > 1 : words.size() < 2)
     return error_line(sequence, Code::syntax, reads ? "r INDEX SUB [TYPE]" : "w INDEX SUB TYPE VALUE");
   Client::Order order{.request = {.node = whom.node, .object = *object}, .sequence = sequence, .type = *type};
@@ -157,7 +158,7 @@ std::string GatewayServer::command(Client& client, std::uint32_t sequence, const
   const auto whom = node_of(request, client, 0);
   if (whom.wrong) return error_line(sequence, *whom.wrong);
   if (request.words.size() != (of_two ? 2U : 1U))
-    return error_line(sequence, Code::syntax, fmt::format("'{}' is too much", request.words.back()));
+    return error_line(sequence, Code::syntax, formatted("'{}' is too much", request.words.back()));
   if (session_->can() == nullptr && (of_two || whom.node == 0))
     return error_line(sequence, Code::not_supported, "it needs CAN");
   if (!options_.writes) {
@@ -182,7 +183,7 @@ std::string GatewayServer::set_default(Client& client, std::uint32_t sequence, c
   const bool known = what == "network" || what == "node" || what == "sdo_timeout" || what == "sdo_block";
   if (!known) return error_line(sequence, Code::not_supported);
   const auto number = request.words.size() == 3 ? gateway::parse_unsigned(request.words[2]) : std::nullopt;
-  if (!number) return error_line(sequence, Code::syntax, fmt::format("'set {}' takes a number", what));
+  if (!number) return error_line(sequence, Code::syntax, formatted("'set {}' takes a number", what));
   if (what == "network" && *number != kOnlyNetwork)
     return error_line(sequence, Code::unsupported_network, "it is 1");
   if (what == "node") {

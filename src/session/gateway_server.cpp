@@ -1,9 +1,9 @@
 #include "session/gateway_server.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <vector>
 
+#include "base/format.hpp"
 #include "drive/enabling_write.hpp"
 #include "session/answer.hpp"
 #include "session/wary.hpp"
@@ -30,7 +30,7 @@ void GatewayServer::on_lost(int who) {
   const auto client = clients_.find(who);
   if (client == clients_.end()) return;
   if (client->second.refused > 1)
-    tell(fmt::format("a client went; {} of its requests were refused", client->second.refused));
+    tell(formatted("a client went; {} of its requests were refused", client->second.refused));
   clients_.erase(client);
 }
 

@@ -1,10 +1,10 @@
 #include "session/identify.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "base/format.hpp"
 #include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/answer.hpp"
@@ -211,8 +211,8 @@ Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
   if (by.empty()) return {};
   return fail(drive_error(
       Errc::refused, node,
-      fmt::format("two nodes answer with this node-ID ({}): writes and motion are refused", by),
-      fmt::format(
+      formatted("two nodes answer with this node-ID ({}): writes and motion are refused", by),
+      formatted(
           "disconnect one and give it another node-ID, then `scan` (drives with LSS take one by their serial numbers: "
           "`help lss set-node`); `disable -n {}` and `nmt stop -n {}` reach both",
           node, node)));

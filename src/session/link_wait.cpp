@@ -1,9 +1,9 @@
 #include "session/link_wait.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 
 namespace servoctl::session {
@@ -32,10 +32,10 @@ bool LinkWait::comes_back(const Error& lost) {
   if (!first_) first_ = since;
   if (since - *first_ >= (only_failing_ ? kPatience : kMost)) return false;
   if (again)
-    tell(fmt::format("{}: {} is still tried after {}", lost.message, doing_, tenths(since - *first_)));
+    tell(formatted("{}: {} is still tried after {}", lost.message, doing_, tenths(since - *first_)));
   else
-    tell(fmt::format("{}: {} waits for the bus, at most {}", lost.message, doing_,
-                     servoctl::to_string(kPatience)));
+    tell(formatted("{}: {} waits for the bus, at most {}", lost.message, doing_,
+                   servoctl::to_string(kPatience)));
   const auto end = since + kPatience;
   for (;;) {
     const auto asked = session_->now();
@@ -45,17 +45,17 @@ bool LinkWait::comes_back(const Error& lost) {
       const bool was_lost = time - since >= kFlicker;
       only_failing_ = only_failing_ && !was_lost;
       if (was_lost)
-        tell(fmt::format("{} is back after {}: now {}", session_->url(), tenths(time - since), doing_));
+        tell(formatted("{} is back after {}: now {}", session_->url(), tenths(time - since), doing_));
       else if (!again)
-        tell(fmt::format("{} can be opened: now {}", session_->url(), doing_));
+        tell(formatted("{} can be opened: now {}", session_->url(), doing_));
       return true;
     }
     if (time >= end || time < asked + kPause) {
-      tell(fmt::format("{} did not come back: {}", session_->url(), back.error().message));
+      tell(formatted("{} did not come back: {}", session_->url(), back.error().message));
       return false;
     }
-    tell(fmt::format("{} is still lost after {}: {} still waits", session_->url(), tenths(time - since),
-                     doing_));
+    tell(formatted("{} is still lost after {}: {} still waits", session_->url(), tenths(time - since),
+                   doing_));
   }
 }
 

@@ -1,10 +1,10 @@
 #include "session/lss.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
+#include "base/format.hpp"
 #include "session/can_network.hpp"
 #include "session/hearing.hpp"
 #include "session/option_scope.hpp"
@@ -25,12 +25,12 @@ constexpr LssService kLssNumbers[] = {LssService::inquire_vendor, LssService::in
                                       LssService::inquire_revision, LssService::inquire_serial};
 
 std::string who(const std::optional<LssAddress>& address) {
-  return address ? fmt::format("the LSS slave with {}", to_string(*address)) : "an LSS slave";
+  return address ? formatted("the LSS slave with {}", to_string(*address)) : "an LSS slave";
 }
 
 tl::unexpected<Error> nobody(const std::optional<LssAddress>& address) {
   return fail(Errc::timeout,
-              address ? fmt::format("no LSS slave answers to {}", to_string(*address))
+              address ? formatted("no LSS slave answers to {}", to_string(*address))
                       : std::string("no LSS slave answers on this bus"),
               "`lss scan` finds those without a node-ID; many drives have no LSS, or have it switched off: "
               "`help address` tells how their own parameter is written");
@@ -38,9 +38,9 @@ tl::unexpected<Error> nobody(const std::optional<LssAddress>& address) {
 
 tl::unexpected<Error> several(const std::optional<LssAddress>& address, std::size_t count) {
   return address
-             ? fail(Errc::refused, fmt::format("{} LSS slaves have {}", count, to_string(*address)),
+             ? fail(Errc::refused, formatted("{} LSS slaves have {}", count, to_string(*address)),
                     "nothing was set; switch all but one of them off, and take one after the other")
-             : fail(Errc::refused, fmt::format("{} LSS slaves answer: --only takes one that is alone", count),
+             : fail(Errc::refused, formatted("{} LSS slaves answer: --only takes one that is alone", count),
                     "nothing was set; name the one that is meant by --vendor, --product, --revision and "
                     "--serial, or switch the others off");
 }
@@ -122,8 +122,8 @@ Result<LssSlave> LssDialogue::look(const std::optional<LssAddress>& address) {
     silent = false;
     if (address && number->front().number != *parts[i])
       return fail(Errc::protocol,
-                  fmt::format("{} says of itself 0x{:08X} where 0x{:08X} was selected", who(address),
-                              number->front().number, *parts[i]),
+                  formatted("{} says of itself 0x{:08X} where 0x{:08X} was selected", who(address),
+                            number->front().number, *parts[i]),
                   "nothing was set; is another slave in the configuration state?");
     *parts[i] = number->front().number;
   }
@@ -135,16 +135,16 @@ Result<void> LssDialogue::order(const canopen::LssRequest& request, std::string_
   const auto answers = ask(request, patience);
   if (!answers) return fail(answers.error());
   if (answers->empty())
-    return fail(Errc::timeout, fmt::format("the LSS slave did not say whether it has {}", what),
+    return fail(Errc::timeout, formatted("the LSS slave did not say whether it has {}", what),
                 "one that does not support a request may leave it unanswered; --timeout waits longer");
   const auto refusal =
       std::find_if(answers->begin(), answers->end(), [](const auto& answer) { return answer.error != 0; });
   if (refusal != answers->end())
     return fail(Errc::negative,
-                fmt::format("the LSS slave has not {}: {}", what, canopen::lss_error_text(*refusal)),
+                formatted("the LSS slave has not {}: {}", what, canopen::lss_error_text(*refusal)),
                 "CiA 305 leaves it to the maker what a slave supports: its manual says");
   if (answers->size() > 1)
-    return fail(Errc::refused, fmt::format("{} LSS slaves said that they have {}", answers->size(), what),
+    return fail(Errc::refused, formatted("{} LSS slaves said that they have {}", answers->size(), what),
                 "switch all but one off, and look at each with `lss inquire --only`");
   return {};
 }

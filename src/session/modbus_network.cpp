@@ -1,8 +1,8 @@
 #include "session/modbus_network.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/modbus_object_channel.hpp"
 
@@ -115,7 +115,7 @@ void ModbusNetwork::begin_anew() {
 Result<void> ModbusNetwork::check_stream() {
   if (!client_.broken()) return {};
   begin_anew();
-  return fail(Errc::bus, fmt::format("{}: what came is no Modbus TCP", url_),
+  return fail(Errc::bus, formatted("{}: what came is no Modbus TCP", url_),
               "is another service at this port? The next line connects anew");
 }
 
@@ -138,7 +138,7 @@ Result<bool> ModbusNetwork::step(TimePoint deadline) {
   const auto outcome = client_.take_outcome();
   if (outcome && asking_ != nullptr) {
     if (outcome->echoed && !std::exchange(told_echo_, true))
-      notices_.push_back(fmt::format("{}: the adapter hands back what it sends; that is left out", url_));
+      notices_.push_back(formatted("{}: the adapter hands back what it sends; that is left out", url_));
     std::exchange(asking_, nullptr)->on_outcome(*outcome);
   }
   return outcome || !bytes->empty();
@@ -178,8 +178,8 @@ std::vector<std::string> ModbusNetwork::take_notices() { return std::exchange(no
 
 std::string ModbusNetwork::silence_hint(std::uint8_t node) const {
   if (client_.framing() == modbus::Framing::tcp)
-    return fmt::format("is {} its unit address? Behind a gateway: check line, speed and parity there", node);
-  return fmt::format(
+    return formatted("is {} its unit address? Behind a gateway: check line, speed and parity there", node);
+  return formatted(
       "check power, cable (A and B swapped?), that its address is {}, and that speed, parity and {} are the "
       "drive's: {}",
       node, client_.framing() == modbus::Framing::ascii ? "ASCII" : "RTU", url_);

@@ -1,8 +1,7 @@
 #include "session/modbus_object_channel.hpp"
 
-#include <fmt/format.h>
-
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/open_requests.hpp"
 #include "drive/standard_objects.hpp"
 
@@ -26,7 +25,7 @@ void ModbusObjectChannel::start_upload(ObjectAddress object, TimePoint, canopen:
                modbus::read_request(modbus::Function::read_registers, network_->presence_register(node_), 1));
   if (!address) return refuse_unknown(object);
   if (size != 0 && size != kRegisterBytes)
-    return refuse(object, fmt::format("it has {} bytes, and a register has 2", size), {});
+    return refuse(object, formatted("it has {} bytes, and a register has 2", size), {});
   ask(Way::read, modbus::read_request(modbus::Function::read_registers, *address, 1));
 }
 
@@ -36,7 +35,7 @@ void ModbusObjectChannel::start_download(ObjectAddress object, Bytes data, TimeP
   const auto address = network_->register_of(node_, object);
   if (!address) return refuse_unknown(object);
   if (data.size() != kRegisterBytes)
-    return refuse(object, fmt::format("{} bytes do not go into a register, which has 2", data.size()),
+    return refuse(object, formatted("{} bytes do not go into a register, which has 2", data.size()),
                   "nothing was sent");
   ask(Way::write, modbus::write_request(*address, static_cast<std::uint16_t>(load_le(data))));
 }
@@ -76,16 +75,16 @@ Result<void> ModbusObjectChannel::on_time(TimePoint) {
 TimePoint ModbusObjectChannel::deadline() const { return busy() ? network_->next_event() : kNever; }
 
 std::string ModbusObjectChannel::what_text() const {
-  if (way_ == Way::request) return fmt::format("function {:02X}h", pdu_.front());
-  return fmt::format("register {:04X}h", modbus::load_be16(ByteSpan(pdu_).subspan(1)));
+  if (way_ == Way::request) return formatted("function {:02X}h", pdu_.front());
+  return formatted("register {:04X}h", modbus::load_be16(ByteSpan(pdu_).subspan(1)));
 }
 
 Error ModbusObjectChannel::refusal(std::uint8_t exception) const {
   const auto meaning = modbus::exception_meaning(exception);
-  const auto what = fmt::format("{} of {} was {}: Modbus exception {:02X}h, {}{}{}",
-                                way_ == Way::write ? "the write" : "the read", what_text(),
-                                modbus::is_open(exception) ? "not answered" : "refused", exception,
-                                modbus::exception_name(exception), meaning.empty() ? "" : ": ", meaning);
+  const auto what = formatted("{} of {} was {}: Modbus exception {:02X}h, {}{}{}",
+                              way_ == Way::write ? "the write" : "the read", what_text(),
+                              modbus::is_open(exception) ? "not answered" : "refused", exception,
+                              modbus::exception_name(exception), meaning.empty() ? "" : ": ", meaning);
   const auto code = modbus::is_open(exception) ? Errc::timeout : Errc::sdo_abort;
   if (way_ == Way::request) return drive_error(code, node_, what);
   return drive_error(code, node_, object_, what);
@@ -94,18 +93,18 @@ Error ModbusObjectChannel::refusal(std::uint8_t exception) const {
 /// What came in instead says more than that nothing did.
 Error ModbusObjectChannel::silence(const Outcome& outcome) const {
   auto out =
-      drive_error(Errc::timeout, node_, object_, fmt::format("no answer within {}", to_string(timeout_)));
+      drive_error(Errc::timeout, node_, object_, formatted("no answer within {}", to_string(timeout_)));
   if (way_ == Way::request || way_ == Way::presence)
-    out = drive_error(Errc::timeout, node_, fmt::format("no answer within {}", to_string(timeout_)));
+    out = drive_error(Errc::timeout, node_, formatted("no answer within {}", to_string(timeout_)));
   if (outcome.late) {
     out.message += lateness_text(*outcome.late);
     out.hint = lateness_hint(*outcome.late);
   } else if (outcome.other_unit) {
-    out.message += fmt::format("; unit {} answered instead", *outcome.other_unit);
+    out.message += formatted("; unit {} answered instead", *outcome.other_unit);
     out.hint = "do two units, or two masters, talk on this line?";
   } else if (outcome.damaged > 0) {
-    out.message += fmt::format("; {} bytes came that are no message", outcome.damaged);
-    out.hint = fmt::format(
+    out.message += formatted("; {} bytes came that are no message", outcome.damaged);
+    out.hint = formatted(
         "has the drive another speed, parity or form of frames than {}? Two units of one address, and noise "
         "on the cable, look the same",
         network_->url());
@@ -126,8 +125,8 @@ void ModbusObjectChannel::on_outcome(const Outcome& outcome) {
     case Outcome::Kind::malformed:
       if (way_ == Way::presence) break;
       return finish(fail(drive_error(Errc::protocol, node_, object_,
-                                     fmt::format("the answer to {} has another length than was asked for: {}",
-                                                 what_text(), to_hex(outcome.pdu)),
+                                     formatted("the answer to {} has another length than was asked for: {}",
+                                               what_text(), to_hex(outcome.pdu)),
                                      "is this device what -d says?")));
     case Outcome::Kind::refused:
       if (modbus::is_open(outcome.pdu[1])) return finish(fail(refusal(outcome.pdu[1])));

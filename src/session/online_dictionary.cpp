@@ -1,11 +1,11 @@
 #include "session/online_dictionary.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <variant>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
@@ -47,7 +47,7 @@ Kind kind_of(const CoeEntry& described) {
   if (type && *type != od::DataType::domain) return {*type, {}};
   if (described.data_type == od::cia_code(od::DataType::domain)) return {od::DataType::domain, {}};
   const auto taken = type_of_bits(described.bits);
-  return {taken, fmt::format("type {:04X}h of the drive, taken as {}", described.data_type, name(taken))};
+  return {taken, formatted("type {:04X}h of the drive, taken as {}", described.data_type, name(taken))};
 }
 
 /// `PRE-OP` where the bits of the three states, PRE-OP first, are not all there.
@@ -65,12 +65,12 @@ void note_states(const CoeEntry& described, od::Entry& entry) {
   const auto reads = states_of(described.access & kReads);
   const auto writes = states_of((described.access & kWrites) >> 3U);
   if (od::writable(entry.access) && !writes.empty()) {
-    append(entry.note, fmt::format("can be written in {} only", writes), "; ");
-    append(entry.note_zh, fmt::format("仅可在 {} 状态下写入", writes), "；");
+    append(entry.note, formatted("can be written in {} only", writes), "; ");
+    append(entry.note_zh, formatted("仅可在 {} 状态下写入", writes), "；");
   }
   if (od::readable(entry.access) && !reads.empty()) {
-    append(entry.note, fmt::format("can be read in {} only", reads), "; ");
-    append(entry.note_zh, fmt::format("仅可在 {} 状态下读取", reads), "；");
+    append(entry.note, formatted("can be read in {} only", reads), "; ");
+    append(entry.note_zh, formatted("仅可在 {} 状态下读取", reads), "；");
   }
 }
 
@@ -115,10 +115,10 @@ class OnlineReader {
   /// A drive that refuses the list has no dictionary to give.
   Error without_list(Error error) const {
     if (error.code != Errc::sdo_abort && error.code != Errc::protocol) return error;
-    const auto prefix = fmt::format("node {}: ", node_);
+    const auto prefix = formatted("node {}: ", node_);
     const auto why =
         std::string_view(error.message).substr(error.message.starts_with(prefix) ? prefix.size() : 0);
-    error.message = fmt::format("node {} does not describe its objects (no SDO information): {}", node_, why);
+    error.message = formatted("node {} does not describe its objects (no SDO information): {}", node_, why);
     return error;
   }
 
@@ -155,14 +155,14 @@ class OnlineReader {
     if (!entry) return {};
     if (entry->name.empty())
       entry->name = out.code == od::ObjectCode::array || out.code == od::ObjectCode::record
-                        ? fmt::format("{} {}", object.name, address.sub)
+                        ? formatted("{} {}", object.name, address.sub)
                         : object.name;
     out.entries.push_back(std::move(*entry));
     return {};
   }
 
   Result<void> leave_out(ObjectAddress address, const Error& why) {
-    out_.left_out.push_back(fmt::format("{}: {}", to_string(address), why.message));
+    out_.left_out.push_back(formatted("{}: {}", to_string(address), why.message));
     return {};
   }
 
@@ -210,10 +210,9 @@ std::optional<od::Entry> online_entry(const CoeEntry& described) {
 Result<OnlineDictionary> read_online_dictionary(Session& session, std::uint8_t node) {
   auto* network = session.ethercat();
   if (network == nullptr)
-    return fail(
-        Errc::usage,
-        fmt::format("{} has no drives that describe their objects: that is of EtherCAT", session.url()),
-        "name a family with -d, or the data sheet of the drive, -d FILE.eds");
+    return fail(Errc::usage,
+                formatted("{} has no drives that describe their objects: that is of EtherCAT", session.url()),
+                "name a family with -d, or the data sheet of the drive, -d FILE.eds");
   auto out = OnlineReader(session, *network, node).read();
   if (!out) return out;
   read_identity(session, node, out->sheet);

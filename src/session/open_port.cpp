@@ -1,8 +1,8 @@
 #include "session/open_port.hpp"
 
-#include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "ethernet/interface.hpp"
 #include "ethernet/local_port.hpp"
@@ -21,8 +21,8 @@ constexpr std::string_view kScheme = "coe:";
 Result<void> check_trace_name(const std::filesystem::path& file) {
   if (is_pcap(file)) return {};
   return fail(Errc::usage,
-              fmt::format("the trace of an EtherCAT bus is a .pcap or .pcapng, not {}", file.string()),
-              fmt::format("name it {}.pcap; Wireshark opens it", file.stem().string()));
+              formatted("the trace of an EtherCAT bus is a .pcap or .pcapng, not {}", file.string()),
+              formatted("name it {}.pcap; Wireshark opens it", file.stem().string()));
 }
 
 /// What stands behind `coe:`, taken apart: `local` and `cell`; an interface has no scheme.
@@ -42,7 +42,7 @@ tl::unexpected<Error> no_port(std::string_view url, std::string_view scheme) {
   const std::string schemes[] = {"local", "sim"};
   auto hint = did_you_mean(scheme, schemes);
   if (hint.empty()) hint = "write coe:eth0, coe:local:NAME or coe:sim:FAMILY@1";
-  return fail(Errc::usage, fmt::format("'{}' is not an EtherCAT bus", url), std::move(hint));
+  return fail(Errc::usage, formatted("'{}' is not an EtherCAT bus", url), std::move(hint));
 }
 
 Result<std::unique_ptr<ethernet::Port>> open_wire(std::string_view url, End end) {

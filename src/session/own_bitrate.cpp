@@ -1,8 +1,8 @@
 #include "session/own_bitrate.hpp"
 
-#include <fmt/format.h>
 #include <string>
 
+#include "base/format.hpp"
 #include "session/open_bus.hpp"
 
 namespace servoctl::session {
@@ -10,7 +10,7 @@ namespace {
 
 /// The command as it is typed on the machine that has the interface.
 std::string typed_there(std::string_view command, std::string_view interface_name) {
-  return fmt::format("{}{}{}", command, command == "bus detect" ? " " : " -b ", interface_name);
+  return formatted("{}{}{}", command, command == "bus detect" ? " " : " -b ", interface_name);
 }
 
 }  // namespace
@@ -19,24 +19,22 @@ Result<void> check_own_bitrate(std::string_view url, std::string_view command) {
   const auto scheme = url.substr(0, url.find(':'));
   if (scheme == url || scheme == "socketcan" || scheme == "slcan") return {};
   if (scheme == "socketcand")
-    return fail(
-        Errc::usage, fmt::format("the bitrate of {} is set on the machine that has the interface", url),
-        fmt::format("run servoctl there: `{}`", typed_there(command, url.substr(url.rfind('/') + 1))));
+    return fail(Errc::usage, formatted("the bitrate of {} is set on the machine that has the interface", url),
+                formatted("run servoctl there: `{}`", typed_there(command, url.substr(url.rfind('/') + 1))));
   if (scheme == "gateway")
-    return fail(Errc::usage,
-                fmt::format("the bitrate of the bus behind {} is set where the gateway runs", url),
-                fmt::format("end the gateway, and run servoctl there: `{}`", typed_there(command, "can0")));
+    return fail(Errc::usage, formatted("the bitrate of the bus behind {} is set where the gateway runs", url),
+                formatted("end the gateway, and run servoctl there: `{}`", typed_there(command, "can0")));
   if (scheme == "modbus")
     return fail(
         Errc::usage,
-        fmt::format("{}: devices with Modbus are silent until they are asked, and listening finds nothing",
-                    url),
+        formatted("{}: devices with Modbus are silent until they are asked, and listening finds nothing",
+                  url),
         "ask at each speed and parity that they may have, and see at which they answer: `scan -b "
         "modbus:/dev/ttyUSB0@9600,8E1`, then @19200,8E1, @9600,8N1 and so on; over TCP there is no speed to find");
   if (scheme == "coe")
-    return fail(Errc::usage, fmt::format("{}: EtherCAT has one speed, 100 Mbit/s, and none to find", url),
-                fmt::format("`doctor -b {}` looks at its links", url));
-  return fail(Errc::usage, fmt::format("{} has no bitrate to find", url),
+    return fail(Errc::usage, formatted("{}: EtherCAT has one speed, 100 Mbit/s, and none to find", url),
+                formatted("`doctor -b {}` looks at its links", url));
+  return fail(Errc::usage, formatted("{} has no bitrate to find", url),
               "only an interface of the kernel (can0) and an adapter behind slcan: have one");
 }
 

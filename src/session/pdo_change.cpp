@@ -1,9 +1,9 @@
 #include "session/pdo_change.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
+#include "base/format.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
@@ -142,7 +142,7 @@ class Change {
   }
 
   void note(const Error& refusal, std::string_view how) {
-    notices_.push_back(fmt::format("{}; tried again {}", refusal.message, how));
+    notices_.push_back(formatted("{}; tried again {}", refusal.message, how));
   }
 
   Session* session_;

@@ -1,9 +1,9 @@
 #include "session/rehearsal.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 
 namespace servoctl::session {
 
@@ -17,7 +17,7 @@ PlannedMessage planned_state(std::uint8_t node, NodeState state, std::string whe
 }
 
 PlannedMessage planned_life_sign(std::uint8_t node, const LifeSign& sign) {
-  return {.node = node, .life_sign = sign, .when = fmt::format("every {}", servoctl::to_string(sign.period))};
+  return {.node = node, .life_sign = sign, .when = formatted("every {}", servoctl::to_string(sign.period))};
 }
 
 void Rehearsal::add(PlannedMessage message) {

@@ -1,9 +1,9 @@
 #include "session/restore.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 
+#include "base/format.hpp"
 #include "canopen/pdo.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/option_scope.hpp"
@@ -71,7 +71,7 @@ class Run {
     for (auto& [object, data] : out)
       if (object.index >= 0x2000 && object.index < 0x6000 && (unlocked || locked.count(object) == 0))
         data = other_than(object, data);
-    out_.notices.push_back(fmt::format(
+    out_.notices.push_back(formatted(
         "node {}: it was working in RAM, so every value is written to flash, not only those that differ",
         node_));
     return out;

@@ -1,9 +1,9 @@
 #include "session/ring_scan.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "session/scan.hpp"
 
 namespace servoctl::session {
@@ -41,7 +41,7 @@ bool serves_objects(const EtherCatNetwork::Seen& seen) {
 void compare(std::vector<std::string>& doubts, std::string_view what, const std::optional<std::uint32_t>& sii,
              const std::optional<std::uint32_t>& object) {
   if (sii && object && *sii != *object)
-    doubts.push_back(fmt::format("it says {} 0x{:X}, and the drive itself 0x{:X}", what, *sii, *object));
+    doubts.push_back(formatted("it says {} 0x{:X}, and the drive itself 0x{:X}", what, *sii, *object));
 }
 
 /// What the drive says of itself goes before what somebody has written into its SII.

@@ -1,7 +1,6 @@
 #include "session/ring_state.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 
@@ -13,7 +12,7 @@ using ethercat::AlState;
 Error nobody_at(std::uint8_t node, std::size_t count) {
   return drive_error(
       Errc::timeout, node,
-      fmt::format("there is no slave at this position: {} {} on the ring", count, count == 1 ? "is" : "are"),
+      formatted("there is no slave at this position: {} {} on the ring", count, count == 1 ? "is" : "are"),
       "`scan` shows them");
 }
 
@@ -30,7 +29,7 @@ Result<void> check_without_power(Session& session, std::uint8_t node) {
   if (!power || !*power) return {};
   return fail(drive_error(Errc::refused, node,
                           "it is energised: a change of its AL state would de-energise it in motion",
-                          fmt::format("`disable -n {}` first", node)));
+                          formatted("`disable -n {}` first", node)));
 }
 
 }  // namespace

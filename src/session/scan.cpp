@@ -1,9 +1,9 @@
 #include "session/scan.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "canopen/node_list.hpp"
 #include "drive/shared_profile.hpp"
@@ -133,7 +133,7 @@ Result<std::vector<std::uint8_t>> nodes_present(Session& session) {
   const auto found = find_nodes(session, canopen::every_node_id(), nullptr);
   if (!found) return fail(found.error());
   if (found->empty())
-    return fail(Errc::timeout, fmt::format("no node answered on {}", session.url()),
+    return fail(Errc::timeout, formatted("no node answered on {}", session.url()),
                 "check power, cable, termination and bitrate");
   std::vector<std::uint8_t> out;
   for (const auto& identity : *found) out.push_back(identity.node);
@@ -151,10 +151,10 @@ std::string warning_of_details(std::span<const Identity> identities,
       return rules && has_marks(**rules) && agrees_in_numbers(identity, **rules) &&
              names_vendor(**rules, identity);
     });
-    if (!known && !identity.by_registers) append(nodes, fmt::format("{}", identity.node));
+    if (!known && !identity.by_registers) append(nodes, formatted("{}", identity.node));
   }
   if (nodes.empty()) return {};
-  return fmt::format(
+  return formatted(
       "node {}: 1000h and 1018h fit no known family; servoctl now reads its name (1008h to 100Ah) and objects of known "
       "families. Some drives raise an alarm if they do not have such an object",
       nodes);

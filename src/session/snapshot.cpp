@@ -1,8 +1,8 @@
 #include "session/snapshot.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "od/real_number.hpp"
 #include "session/bus_return.hpp"
@@ -24,7 +24,7 @@ Result<void> take_answer(const Result<Bytes>& answer, SnapshotEntry& entry) {
   }
   if (answer.error().code != Errc::sdo_abort) return fail(answer.error());
   const auto code = answer.error().abort_code;
-  entry.left_out = code ? fmt::format("refused: {}", canopen::sdo_abort_text(*code)) : answer.error().message;
+  entry.left_out = code ? formatted("refused: {}", canopen::sdo_abort_text(*code)) : answer.error().message;
   return {};
 }
 
@@ -35,7 +35,7 @@ void leave_out_no_number(const drive::DriveSetting& setting, SnapshotEntry& entr
   const auto encoding = setting.parameter != nullptr ? setting.parameter->encoding : setting.entry->encoding;
   if (!entry.bytes || !value || od::is_number(encoding, *value)) return;
   entry.left_out =
-      fmt::format("its bits, {}, are those of infinity or of no number (NaN)", to_hex(*entry.bytes));
+      formatted("its bits, {}, are those of infinity or of no number (NaN)", to_hex(*entry.bytes));
   entry.bytes.reset();
 }
 
@@ -46,7 +46,7 @@ Result<void> of_one_drive(Session& session, std::uint8_t node) {
   auto single = refuse_duplicate(session, node);
   if (single) return single;
   single.error().message =
-      fmt::format("what was read may be of either of two drives: {}", single.error().message);
+      formatted("what was read may be of either of two drives: {}", single.error().message);
   return single;
 }
 

@@ -1,10 +1,10 @@
 #include "session/storage.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <span>
 #include <utility>
 
+#include "base/format.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/option_scope.hpp"
@@ -86,8 +86,8 @@ Result<std::vector<SdoRequest>> store_writes(const drive::Profile* profile, std:
   if (!rules.store.empty()) return writes_of(*profile, node, rules.store);
   auto hint = rules.flash_switch.empty()
                   ? std::string("its manual describes no method; check whether values survive a power cycle")
-                  : fmt::format("values are kept only when written: `{} … --keep` switches {}",
-                                writes_by_parameter(*profile) ? "param set" : "write", rules.flash_switch);
+                  : formatted("values are kept only when written: `{} … --keep` switches {}",
+                              writes_by_parameter(*profile) ? "param set" : "write", rules.flash_switch);
   return fail(
       drive_error(Errc::negative, node, "this family cannot store all values at once", std::move(hint)));
 }
@@ -165,10 +165,10 @@ Result<void> StorageScope::choose_memory() {
   if (!found) return fail(found.error());
   if (*found == memory_->now) return {};
   const auto told =
-      keep_ ? fmt::format("it acknowledged {} = {}, and did not take it: values would go to its RAM",
-                          rules.flash_switch, *value)
-            : fmt::format("it acknowledged {} = {}, and did not take it: values would go to its flash",
-                          rules.flash_switch, *value);
+      keep_ ? formatted("it acknowledged {} = {}, and did not take it: values would go to its RAM",
+                        rules.flash_switch, *value)
+            : formatted("it acknowledged {} = {}, and did not take it: values would go to its flash",
+                        rules.flash_switch, *value);
   return fail(
       drive_error(Errc::negative, node_, memory_->object, told, "nothing was written; set it at the panel"));
 }
@@ -193,13 +193,13 @@ void StorageScope::tell_memory(bool stays, std::size_t writes) {
   if (keep_ || rehearsal_ != nullptr) return;
   const auto& rules = profile_->rules.store;
   if (stays)
-    notices_.push_back(fmt::format(
+    notices_.push_back(formatted(
         "node {}: {} is now {}: values go to RAM and are lost at power-off; --keep makes them permanent",
         node_, rules.flash_switch, *rules.to_ram));
   else if (writes > 0)
     notices_.push_back(
-        fmt::format("node {}: what was written went to RAM and is lost at power-off; {} is as it was again",
-                    node_, rules.flash_switch));
+        formatted("node {}: what was written went to RAM and is lost at power-off; {} is as it was again",
+                  node_, rules.flash_switch));
 }
 
 Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
@@ -229,9 +229,9 @@ void StorageScope::tell_wear(std::size_t writes) {
   if (!profile_->rules.store.wears || writes == 0) return;
   auto& all = session_->flash_writes(node_);
   all += writes;
-  notices_.push_back(fmt::format("node {}: {} written to its flash{}; each write wears it", node_,
-                                 writes == 1 ? "1 value was" : fmt::format("{} values were", writes),
-                                 all == writes ? "" : fmt::format(" ({} since the bus was opened)", all)));
+  notices_.push_back(formatted("node {}: {} written to its flash{}; each write wears it", node_,
+                               writes == 1 ? "1 value was" : formatted("{} values were", writes),
+                               all == writes ? "" : formatted(" ({} since the bus was opened)", all)));
 }
 
 Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
@@ -242,7 +242,7 @@ Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
   const auto note = [&](const Result<void>& result, std::string_view what, std::string_view hint) {
     if (result) return;
     auto error = result.error();
-    error.message = fmt::format("{}: {}", what, error.message);
+    error.message = formatted("{}: {}", what, error.message);
     if (!hint.empty()) error.hint = hint;
     error.node = node_;
     if (wrong)

@@ -1,12 +1,12 @@
 #include "session/wary.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/access_alarms.hpp"
 #include "drive/shared_profile.hpp"
@@ -116,9 +116,9 @@ std::optional<Error> refusal_of(const Session& session, std::uint8_t node, Objec
   const auto& profile = *session.wary_of(node);
   auto error = drive_error(
       Errc::sdo_abort, node, object,
-      fmt::format("not sent: the data of {} have no such object, and a request for it raises the alarm {}",
-                  profile.family, alarm),
-      fmt::format("`objects -d {}` lists the objects of this family", profile.family));
+      formatted("not sent: the data of {} have no such object, and a request for it raises the alarm {}",
+                profile.family, alarm),
+      formatted("`objects -d {}` lists the objects of this family", profile.family));
   const bool has_index = profile.dictionary.object(object.index) != nullptr;
   error.abort_code = has_index ? canopen::sdo_abort::kNoSubIndex : canopen::sdo_abort::kNoObject;
   return error;

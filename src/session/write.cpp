@@ -1,6 +1,6 @@
 #include "session/write.hpp"
 
-#include <fmt/format.h>
+#include "base/format.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -13,7 +13,7 @@ Error about(const SdoRequest& request, Errc code, std::string what, std::string 
 std::string shown(ByteSpan data) {
   constexpr std::size_t kMost = 32;
   if (data.size() <= kMost) return to_hex(data);
-  return fmt::format("{} … ({} bytes)", to_hex(data.first(kMost)), data.size());
+  return formatted("{} … ({} bytes)", to_hex(data.first(kMost)), data.size());
 }
 
 /// Whether it is unknown what became of the write: no answer, or one that is none. A request that was not
@@ -26,11 +26,11 @@ Result<Written> after_lost_answer(const SdoRequest& request, const Error& lost, 
   const std::string_view what = lost.code == Errc::timeout ? "the write was sent, but no answer came"
                                                            : "the write was sent, its answer was invalid";
   if (!found)
-    return fail(about(request, lost.code, fmt::format("{}, and the value cannot be read back", what),
+    return fail(about(request, lost.code, formatted("{}, and the value cannot be read back", what),
                       "whether the value was written is unknown: read it when the node answers again"));
   if (*found != *request.data)
     return fail(about(request, Errc::negative,
-                      fmt::format("{}, and it had no effect: the object holds {}", what, shown(*found)),
+                      formatted("{}, and it had no effect: the object holds {}", what, shown(*found)),
                       "write it again"));
   Written done;
   done.answer_lost = true;
@@ -65,7 +65,7 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
   if (*found != *request.data)
     return fail(
         about(request, Errc::negative,
-              fmt::format("the drive acknowledged {} but holds {}", shown(*request.data), shown(*found)),
+              formatted("the drive acknowledged {} but holds {}", shown(*request.data), shown(*found)),
               "the drive limits or rounds the value, or another setting overrides it"));
   Written done;
   done.read_back = *found;

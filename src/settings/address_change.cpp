@@ -1,9 +1,9 @@
 #include "settings/address_change.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/node_list.hpp"
 #include "drive/bitrate.hpp"
@@ -27,7 +27,7 @@ tl::unexpected<Error> no_parameter(const show::Desk& desk) {
     return fail(Errc::usage, "a drive on EtherCAT has no node-ID: it is addressed by its place on the ring",
                 "the number after -n changes with the order of the cables");
   return fail(Errc::usage,
-              fmt::format("no parameter of a {} is known that sets its node-ID", desk.profile->family),
+              formatted("no parameter of a {} is known that sets its node-ID", desk.profile->family),
               "look into its manual: switches, its panel, or the vendor's software");
 }
 
@@ -53,8 +53,8 @@ Result<void> hold_serial(const Identity& identity, const AddressWish& wish) {
   return fail(drive_error(
       Errc::refused, identity.node, objects::kSerialNumber,
       identity.serial
-          ? fmt::format("the drive has the serial number {}, not {}", *identity.serial, *wish.serial)
-          : fmt::format("the drive tells no serial number, {} is expected", *wish.serial),
+          ? formatted("the drive has the serial number {}, not {}", *identity.serial, *wish.serial)
+          : formatted("the drive tells no serial number, {} is expected", *wish.serial),
       "nothing was written; `info` shows what it is"));
 }
 
@@ -70,10 +70,9 @@ Result<void> hold_bitrate(show::Desk& desk, const AddressChange& change, const A
   if (!next || *next == *wish.bus_bitrate) return {};
   return fail(drive_error(
       Errc::refused, change.node, target->address,
-      fmt::format(
-          "it starts at {} next, and its bus has {}: to move it is to start anew, and it would be gone",
-          drive::bitrate_text(*next), drive::bitrate_text(*wish.bus_bitrate)),
-      fmt::format(
+      formatted("it starts at {} next, and its bus has {}: to move it is to start anew, and it would be gone",
+                drive::bitrate_text(*next), drive::bitrate_text(*wish.bus_bitrate)),
+      formatted(
           "nothing was written; `address --bitrate {} -n {}` takes that back, and all go to the other one "
           "with `address --bitrate {} -n all`",
           *wish.bus_bitrate, change.node, *next)));
@@ -117,7 +116,7 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
   const auto& rules = desk.profile->rules.nmt;
   if (desk.session->network().is_ring() || (wish.node && rules.node_id.empty())) return no_parameter(desk);
   if (wish.node && (*wish.node < canopen::kFirstNode || *wish.node > canopen::kLastNode))
-    return fail(Errc::usage, fmt::format("{} is not a node-ID", *wish.node), "node-IDs are 1 to 127");
+    return fail(Errc::usage, formatted("{} is not a node-ID", *wish.node), "node-IDs are 1 to 127");
   const auto code =
       wish.bitrate ? drive::bitrate_code(*desk.profile, *wish.bitrate) : Result<std::int64_t>(0);
   if (!code) return fail(code.error());
@@ -155,9 +154,9 @@ Result<void> refuse_energised(session::Session& session, std::uint8_t node, std:
   return fail(drive_error(
       Errc::refused, node,
       !session::sharers_of(session, node).empty()
-          ? fmt::format("two drives have this node-ID, and one is energised: {} cannot be changed now", what)
-          : fmt::format("it is energised: {} cannot be changed now", what),
-      fmt::format("`disable -n {}` de-energises it; make sure that the load is held", node)));
+          ? formatted("two drives have this node-ID, and one is energised: {} cannot be changed now", what)
+          : formatted("it is energised: {} cannot be changed now", what),
+      formatted("`disable -n {}` de-energises it; make sure that the load is held", node)));
 }
 
 Result<void> refuse_energised_nodes(session::Session& session, std::string_view what) {
@@ -178,14 +177,14 @@ Result<void> refuse_taken(show::Desk& desk, std::span<const std::uint8_t> nodes,
     return {};
   }
   const auto& [node, how] = *used->begin();
-  return fail(drive_error(Errc::refused, node, fmt::format("this node-ID is taken: {}", how),
+  return fail(drive_error(Errc::refused, node, formatted("this node-ID is taken: {}", how),
                           "nothing was written; `scan` shows who is there"));
 }
 
 void tell_unguarded(show::Desk& desk) {
   if (desk.dry_run || session::guards_nodes(*desk.session)) return;
-  auto text = fmt::format("{} carries no remote frames: nodes that are stopped (NMT) were not looked for",
-                          desk.session->url());
+  auto text = formatted("{} carries no remote frames: nodes that are stopped (NMT) were not looked for",
+                        desk.session->url());
   if (std::ranges::find(desk.notices, text) == desk.notices.end()) desk.notices.push_back(std::move(text));
 }
 
@@ -228,15 +227,15 @@ std::vector<std::string> bitrate_steps(const std::string& bus_url, std::uint32_t
   const bool is_kernels = name.find(':') == std::string::npos;
   std::vector<std::string> out;
   if (is_kernels && !family.empty())
-    out.push_back(fmt::format(
+    out.push_back(formatted(
         "`address --bitrate {} -n all -d {}` restarts all drives and switches {} with them; by hand:",
         bitrate, family, name));
   out.push_back(
       "change all nodes of the bus before any of them restarts: one with another bitrate disturbs the rest");
   out.push_back("then switch all of them off");
-  out.push_back(is_serial    ? fmt::format("name the bus with its new bitrate: slcan:PORT@{}", bitrate)
-                : is_kernels ? fmt::format("`bus up {} --bitrate {}`", name, bitrate)
-                             : fmt::format("set the bitrate of the bus behind {} to {}", name, bitrate));
+  out.push_back(is_serial    ? formatted("name the bus with its new bitrate: slcan:PORT@{}", bitrate)
+                : is_kernels ? formatted("`bus up {} --bitrate {}`", name, bitrate)
+                             : formatted("set the bitrate of the bus behind {} to {}", name, bitrate));
   out.push_back("switch them on; `scan` shows who answers");
   return out;
 }

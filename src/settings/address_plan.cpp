@@ -1,9 +1,9 @@
 #include "settings/address_plan.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/csv.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/node_id.hpp"
@@ -25,7 +25,7 @@ class PlanReader {
   Result<std::vector<AddressRow>> read() {
     for (const auto& column : table_->columns)
       if (column != kNode && column != kNew && column != kFamily && column != kSerial && column != kBitrate)
-        return fail(file_error(file_, 1, fmt::format("unknown column '{}'", column),
+        return fail(file_error(file_, 1, formatted("unknown column '{}'", column),
                                "a plan has the columns node,new and, where wanted, family,serial,bitrate"));
     if (!has(kNode) || !has(kNew))
       return fail(file_error(file_, 1, "the columns node and new are needed", "node,new"));
@@ -35,7 +35,7 @@ class PlanReader {
       if (!read) return fail(read.error());
       out.push_back(*read);
     }
-    if (out.empty()) return fail(Errc::file, fmt::format("{}: no drive stands in it", file_), "node,new");
+    if (out.empty()) return fail(Errc::file, formatted("{}: no drive stands in it", file_), "node,new");
     if (const auto once = each_once(out); !once) return fail(once.error());
     return out;
   }
@@ -54,7 +54,7 @@ class PlanReader {
       const auto number = parse_integer(cell(row, column));
       const auto node = number ? number->as_unsigned() : std::nullopt;
       if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-        return fail(file_error(file_, row.line, fmt::format("'{}' is not a node-ID", cell(row, column)),
+        return fail(file_error(file_, row.line, formatted("'{}' is not a node-ID", cell(row, column)),
                                "node-IDs are 1 to 127"));
       *place = static_cast<std::uint8_t>(*node);
     }
@@ -63,7 +63,7 @@ class PlanReader {
       const auto number = parse_integer(text);
       const auto serial = number ? number->as_unsigned() : std::nullopt;
       if (!serial || *serial > 0xFFFF'FFFFU)
-        return fail(file_error(file_, row.line, fmt::format("'{}' is not a serial number", text),
+        return fail(file_error(file_, row.line, formatted("'{}' is not a serial number", text),
                                "1018h:04 as `info` shows it"));
       out.serial = static_cast<std::uint32_t>(*serial);
     }
@@ -81,9 +81,9 @@ class PlanReader {
     std::optional<std::uint32_t> bitrate;
     for (const auto& row : rows) {
       if (!from.insert(row.node).second)
-        return fail(file_error(file_, row.line, fmt::format("node {} stands twice", row.node)));
+        return fail(file_error(file_, row.line, formatted("node {} stands twice", row.node)));
       if (!to.insert(row.to).second)
-        return fail(file_error(file_, row.line, fmt::format("two drives are to be node {}", row.to)));
+        return fail(file_error(file_, row.line, formatted("two drives are to be node {}", row.to)));
       if (!bitrate) bitrate = row.bitrate;
       if (row.bitrate && row.bitrate != bitrate)
         return fail(file_error(file_, row.line, "the drives of a bus have one bitrate, and the plan has two",
@@ -111,7 +111,7 @@ class Renumbering {
     for (const auto& row : rows_)
       if (taken_.count(row.to) > 0)
         return fail(drive_error(Errc::refused, row.node,
-                                fmt::format("it is to be node {}, and that node-ID is taken", row.to),
+                                formatted("it is to be node {}, and that node-ID is taken", row.to),
                                 "nothing was written; `scan` shows who is there"));
     while (const auto next = waiting()) {
       if (const auto moves = movable()) {
@@ -184,17 +184,17 @@ std::string question_address_plan(std::span<const AddressRow> rows, std::size_t 
                                   const std::string& then) {
   const auto bitrate = bitrate_of(rows);
   if (!bitrate)
-    return fmt::format("Re-address {} drives in {} steps? Each one is restarted.", rows.size(), steps);
+    return formatted("Re-address {} drives in {} steps? Each one is restarted.", rows.size(), steps);
   const auto speed = drive::bitrate_text(*bitrate);
   const auto changed =
       std::ranges::count_if(rows, [](const AddressRow& one) { return one.bitrate.has_value(); });
   auto out = steps == 0
-                 ? fmt::format("Write a bitrate of {} to {} drives, for their next start?", speed, changed)
-                 : fmt::format(
+                 ? formatted("Write a bitrate of {} to {} drives, for their next start?", speed, changed)
+                 : formatted(
                        "Re-address {} drives in {} steps, each restarted, and then write a bitrate of {} to "
                        "{} of them, for their next start?",
                        rows.size(), steps, speed, changed);
-  return then.empty() ? out : fmt::format("{} If so, {}.", out, then);
+  return then.empty() ? out : formatted("{} If so, {}.", out, then);
 }
 
 }  // namespace servoctl::settings

@@ -1,10 +1,10 @@
 #include "settings/address_plan_run.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/checksum.hpp"
 #include "base/file_lock.hpp"
+#include "base/format.hpp"
 #include "canopen/node_list.hpp"
 #include "drive/bitrate.hpp"
 #include "settings/address_plan_bitrate.hpp"
@@ -47,7 +47,7 @@ class PlanRun {
                                : FileLock::take(path_.string() + ".lock");
     if (!lock) return fail(lock.error());
     if (!desk_->dry_run && !*lock)
-      return fail(Errc::refused, fmt::format("another servoctl is carrying out {}", file_.string()),
+      return fail(Errc::refused, formatted("another servoctl is carrying out {}", file_.string()),
                   "wait until it ends, or find it with `ps`");
     if (const auto named = name_families(); !named) return fail(named.error());
     if (const auto known = take_up(); !known) return fail(known.error());
@@ -151,10 +151,10 @@ class PlanRun {
                                             [&](const AddressStep& step) { return step.row == i; }) > 1;
       if (rows_[i].bitrate && !journal_.steps.empty())
         desk_->notices.push_back(
-            fmt::format("node {}: its bitrate is written at the end, when all have moved", rows_[i].to));
+            formatted("node {}: its bitrate is written at the end, when all have moved", rows_[i].to));
       if (goes_aside)
         desk_->notices.push_back(
-            fmt::format("node {}: it steps aside to a free node-ID first, see the steps", rows_[i].node));
+            formatted("node {}: it steps aside to a free node-ID first, see the steps", rows_[i].node));
     }
     show_steps();
     bitrate_.tell_commands();
@@ -248,7 +248,7 @@ class PlanRun {
       if (outcome.end == AddressEnd::nothing_to_do)
         note_idle(i);
       else
-        note(i, fmt::format("{} from the next start", drive::bitrate_text(*rows_[i].bitrate)));
+        note(i, formatted("{} from the next start", drive::bitrate_text(*rows_[i].bitrate)));
       bitrate_.add(i, std::move(*change), std::move(outcome));
     }
     return true;

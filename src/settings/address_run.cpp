@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "drive/bitrate.hpp"
 #include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
@@ -28,7 +29,7 @@ constexpr Duration kSecondLook = std::chrono::seconds(1);
 bool tells_itself_apart(const Identity& identity) { return identity.serial.value_or(0) != 0; }
 
 std::string serial_text(const Identity& identity) {
-  return identity.serial ? fmt::format("serial number {}", *identity.serial) : "no serial number";
+  return identity.serial ? formatted("serial number {}", *identity.serial) : "no serial number";
 }
 
 /// One drive on its way to its new address.
@@ -68,8 +69,8 @@ class AddressRun {
     out_.end = AddressEnd::awaits_restart;
     if (change_->bitrate || (!change_->restarts() && options_->patience == Duration::zero())) return;
     if (!change_->restarts())
-      desk_->tell(fmt::format("switch node {} off and on again now: it is waited for at node {} for {}\n",
-                              change_->node, change_->to, to_string(options_->patience)));
+      desk_->tell(formatted("switch node {} off and on again now: it is waited for at node {} for {}\n",
+                            change_->node, change_->to, to_string(options_->patience)));
     if (const auto sent = session::restart_node(*session_, change_->node, change_->restart); !sent) {
       fail_with(AddressEnd::failed, written_but(sent.error()));
       return;
@@ -86,8 +87,8 @@ class AddressRun {
   }
 
   Error written_but(Error error) const {
-    error.message = fmt::format("node {} was told to be node {}; whether it is one by now is not known: {}",
-                                change_->node, change_->to, error.message);
+    error.message = formatted("node {} was told to be node {}; whether it is one by now is not known: {}",
+                              change_->node, change_->to, error.message);
     error.hint = "`scan` shows who answers";
     error.node = change_->node;
     return error;
@@ -129,31 +130,30 @@ class AddressRun {
     else if (!show::change_of(change_->identity, *identity).empty())
       fail_with(AddressEnd::failed,
                 about(Errc::refused,
-                      fmt::format("node {} answers now, but is another drive: {}, and {} before", change_->to,
-                                  serial_text(*identity), serial_text(change_->identity)),
+                      formatted("node {} answers now, but is another drive: {}, and {} before", change_->to,
+                                serial_text(*identity), serial_text(change_->identity)),
                       "`scan --long` shows who is there"));
     else if (old)
-      fail_with(
-          AddressEnd::failed,
-          about(Errc::negative,
-                fmt::format("it answers as node {0} now, and node {1} still answers: two drives had the "
-                            "node-ID {1}, or one has two",
-                            change_->to, change_->node),
-                "`scan --long` shows both"));
+      fail_with(AddressEnd::failed,
+                about(Errc::negative,
+                      formatted("it answers as node {0} now, and node {1} still answers: two drives had the "
+                                "node-ID {1}, or one has two",
+                                change_->to, change_->node),
+                      "`scan --long` shows both"));
     else
       arrived();
   }
 
   void not_there(bool old) {
     if (change_->bitrate)
-      return void(fail_with(
-          AddressEnd::failed,
-          about(Errc::timeout, fmt::format("no answer at {}", drive::bitrate_text(*change_->bitrate)),
-                "switch it off and on: at another bitrate it disturbs the others")));
+      return void(
+          fail_with(AddressEnd::failed,
+                    about(Errc::timeout, formatted("no answer at {}", drive::bitrate_text(*change_->bitrate)),
+                          "switch it off and on: at another bitrate it disturbs the others")));
     if (!old)
       return void(fail_with(
           AddressEnd::failed,
-          about(Errc::timeout, fmt::format("neither node {} nor node {} answers", change_->node, change_->to),
+          about(Errc::timeout, formatted("neither node {} nor node {} answers", change_->node, change_->to),
                 change_->restarts() ? "switch it off and on, and look with `scan`"
                                     : "is it still off? `scan` shows who answers")));
     const auto& name = desk_->profile->rules.nmt.node_id;
@@ -162,14 +162,14 @@ class AddressRun {
     if (held && load_le(*held) != change_->to)
       return void(fail_with(AddressEnd::failed,
                             about(Errc::negative,
-                                  fmt::format("it forgot its new address when it restarted: {} is {} again",
-                                              name, load_le(*held)),
+                                  formatted("it forgot its new address when it restarted: {} is {} again",
+                                            name, load_le(*held)),
                                   "does it keep its values? `store` may be refused, or its flash be worn")));
     out_.end = AddressEnd::awaits_restart;
     const std::string_view why = change_->restarts() ? "the NMT command did not put its new address in force"
                                                      : "it was not switched off and on";
-    out_.error = about(Errc::negative, fmt::format("still answers at its old address: {}", why),
-                       fmt::format("switch it off and on; then it is node {}", change_->to));
+    out_.error = about(Errc::negative, formatted("still answers at its old address: {}", why),
+                       formatted("switch it off and on; then it is node {}", change_->to));
   }
 
   void arrived() {
@@ -178,10 +178,10 @@ class AddressRun {
     out_.end = change_->bitrate ? AddressEnd::at_bitrate : AddressEnd::moved;
     if (!change_->moves()) return;
     if (!tells_itself_apart(change_->identity))
-      desk_->notices.push_back(fmt::format(
-          "node {}: it tells no serial number of its own: that it is the drive that was node {} is "
-          "known by its kind alone",
-          change_->to, change_->node));
+      desk_->notices.push_back(
+          formatted("node {}: it tells no serial number of its own: that it is the drive that was node {} is "
+                    "known by its kind alone",
+                    change_->to, change_->node));
     const auto now = read_own_cob_ids(*desk_, change_->to);
     if (!now) {
       out_.error = now.error();
@@ -195,8 +195,8 @@ class AddressRun {
     if (out_.stayed.empty()) return;
     std::vector<std::string> each;
     for (const auto object : out_.stayed)
-      each.push_back(fmt::format("{} = 0x{:08X}", to_string(object), load_le(now.at(object))));
-    desk_->notices.push_back(fmt::format(
+      each.push_back(formatted("{} = 0x{:08X}", to_string(object), load_le(now.at(object))));
+    desk_->notices.push_back(formatted(
         "node {}: COB-IDs that did not follow, and still are those of node {}: {}; where that is not "
         "meant, `pdo show -n {} -d {}` shows them, and `write` puts them right",
         change_->to, change_->node, fmt::join(each, ", "), change_->to, change_->profile->family));

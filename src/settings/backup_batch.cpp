@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <cctype>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
@@ -52,7 +52,7 @@ std::string value_text(const drive::Meaning& meaning, od::DataType type, ObjectA
                        const Bytes& data) {
   const auto value = od::decode(type, data);
   const bool number = od::is_integer(type);
-  const auto bits = fmt::format("0x{:0{}X}", load_le(data), 2 * data.size());
+  const auto bits = formatted("0x{:0{}X}", load_le(data), 2 * data.size());
   // COB-IDs, mappings and heartbeat entries are made of fields: decimal says nothing.
   if (number && object.index < 0x2000 && data.size() == 4 && meaning.unit.empty()) return bits;
   const auto same = [&](const std::string& text) {
@@ -74,7 +74,7 @@ class Lines {
   Lines(const drive::Profile& profile, const Backup& backup) : profile_(&profile), backup_(&backup) {}
 
   std::string text() {
-    out_ = fmt::format(
+    out_ = formatted(
         "# Settings of node {} ({}), saved by {} at {} from {}.\n"
         "# `servoctl run` writes them into the drive, `restore` as well and with more care. They are not "
         "stored:\n# add `store --yes` when they are to survive power-off.\ndrive {}\nuse {}\n",
@@ -84,8 +84,8 @@ class Lines {
     add_values();
     for (const auto& entry : backup_->entries)
       if (!entry.bytes)
-        out_ += fmt::format("# left out: {} {} ({})\n", to_string(entry.object), comment_text(entry.name),
-                            comment_text(entry.left_out));
+        out_ += formatted("# left out: {} {} ({})\n", to_string(entry.object), comment_text(entry.name),
+                          comment_text(entry.left_out));
     return std::move(out_);
   }
 
@@ -99,7 +99,7 @@ class Lines {
       if (why.empty())
         wanted.emplace(entry.object, *entry.bytes);
       else
-        comments += fmt::format("# {}: {}\n", why, line(entry.object, *entry.bytes));
+        comments += formatted("# {}: {}\n", why, line(entry.object, *entry.bytes));
     }
     add_writes(wanted);
     out_ += comments;
@@ -109,7 +109,7 @@ class Lines {
   std::string reason_to_comment(const Backup::Entry& entry) const {
     if (is_address(profile_, entry.object)) return "for a drive that takes this one's place on the bus";
     const auto range = range_missed(*profile_, backup_->identity.node, entry.object, *entry.bytes);
-    return range.empty() ? range : fmt::format("the drive's own value, outside of the limits {}", range);
+    return range.empty() ? range : formatted("the drive's own value, outside of the limits {}", range);
   }
 
   /// Nothing is known of the drive the lines will meet.
@@ -173,13 +173,13 @@ std::string write_line(const drive::Profile* profile, std::uint8_t node, ObjectA
   const auto words = worded_value(profile, node, object, data);
   const bool harmless = words.type != od::DataType::string && is_harmless(words.value);
   const bool locked = parameter != nullptr && profile->rules.store.locks(parameter->id);
-  const auto options = (words.typed ? fmt::format(" --type {}", od::name(words.type)) : std::string()) +
+  const auto options = (words.typed ? formatted(" --type {}", od::name(words.type)) : std::string()) +
                        (locked ? " --unlock" : "");
   const bool set = words.panel && !words.typed;
   const std::string verb = set ? "param set " : "write ";
   // A drive's string may be an option to the letter.
-  if (!harmless) return fmt::format("{}{}{} -- {}", verb, words.name, options, in_quotes(words.value));
-  return fmt::format("{}{}{}{}{}", verb, words.name, set ? '=' : ' ', quoted(words.value), options);
+  if (!harmless) return formatted("{}{}{} -- {}", verb, words.name, options, in_quotes(words.value));
+  return formatted("{}{}{}{}{}", verb, words.name, set ? '=' : ' ', quoted(words.value), options);
 }
 
 std::string commented_line(const drive::Profile* profile, std::uint8_t node, ObjectAddress object,
@@ -187,7 +187,7 @@ std::string commented_line(const drive::Profile* profile, std::uint8_t node, Obj
   const auto target = drive::target_at(profile, object);
   const auto name = comment_text(target.parameter != nullptr ? target.parameter->name : target.label());
   const auto line = write_line(profile, node, object, data);
-  return name.empty() ? line : fmt::format("{}  # {}", line, name);
+  return name.empty() ? line : formatted("{}  # {}", line, name);
 }
 
 std::string batch_text(const drive::Profile& profile, const Backup& backup) {

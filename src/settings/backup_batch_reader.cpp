@@ -1,5 +1,5 @@
-#include <fmt/format.h>
 
+#include "base/format.hpp"
 #include "settings/backup_formats.hpp"
 #include "settings/change.hpp"
 
@@ -30,7 +30,7 @@ class BatchBackupReader {
  private:
   Result<void> check_choice() {
     if (!line_->family.empty() && line_->family != profile_->family)
-      return refuse(fmt::format("is for {}, not for {}", line_->family, profile_->family),
+      return refuse(formatted("is for {}, not for {}", line_->family, profile_->family),
                     "give the file's family with -d if the drive really is one");
     if (line_->nodes.empty()) return {};
     if (line_->nodes.size() != 1 || line_->nodes.front() == 0 ||
@@ -50,14 +50,14 @@ class BatchBackupReader {
     auto meaning = drive::meaning(*target, node_);
     if (type) meaning = drive::fitted(meaning, od::size_of(*type).value_or(0));
     if (!type && !meaning.size_known)
-      return refuse(fmt::format("the manual does not tell the length of {}", target->in_sentence()),
+      return refuse(formatted("the manual does not tell the length of {}", target->in_sentence()),
                     "write it with a type: write OBJECT VALUE --type i32");
     if (drive::needs_bridge(meaning, text))
-      return refuse(fmt::format("only the drive itself can convert '{}'", text), "write the raw number");
+      return refuse(formatted("only the drive itself can convert '{}'", text), "write the raw number");
     const auto value = drive::parse_quantity(meaning, text);
     const auto bytes = value ? od::encode(meaning.type, *value) : Result<Bytes>(fail(value.error()));
     if (!bytes)
-      return refuse(fmt::format("{}: {}", target->in_sentence(), bytes.error().message), bytes.error().hint);
+      return refuse(formatted("{}: {}", target->in_sentence(), bytes.error().message), bytes.error().hint);
     Backup::Entry entry;
     entry.object = target->address;
     entry.type = meaning.type;
@@ -68,8 +68,7 @@ class BatchBackupReader {
   }
 
   tl::unexpected<Error> refuse(std::string_view what, std::string hint) const {
-    auto error =
-        fail(Errc::file, fmt::format("{}:{}: {}", *file_, line_->line, what), std::move(hint)).value();
+    auto error = fail(Errc::file, formatted("{}:{}: {}", *file_, line_->line, what), std::move(hint)).value();
     error.line = line_->line;
     return fail(std::move(error));
   }
@@ -92,7 +91,7 @@ Result<Backup> read_batch_backup(LineReader& lines_of, std::string_view text, co
     if (const auto taken = reader.take(line); !taken) return fail(taken.error());
   auto backup = reader.take_backup();
   if (backup.entries.empty())
-    return fail(Errc::file, fmt::format("{}: no line in it writes a value", file),
+    return fail(Errc::file, formatted("{}: no line in it writes a value", file),
                 "a backup is JSON, a DCF, a table or lines such as `param set Pn0202=2`");
   return backup;
 }

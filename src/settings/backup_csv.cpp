@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 
 #include "base/csv.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
@@ -40,12 +40,12 @@ std::string row_text(const drive::Profile& profile, const Backup& backup, const 
     const auto meaning = drive::fitted(drive::meaning(target, backup.identity.node), entry.bytes->size());
     cells = cells_of(meaning, entry.type, *entry.bytes);
     const auto range = range_missed(profile, backup.identity.node, entry.object, *entry.bytes);
-    if (!range.empty()) left_out = fmt::format("{}{}", kOutside, range);
+    if (!range.empty()) left_out = formatted("{}{}", kOutside, range);
   }
-  return fmt::format("{},0x{:04X},0x{:02X},{},{},{},{},{},{},{}\n", backup.identity.node, entry.object.index,
-                     entry.object.sub, csv_cell(entry.id), csv_cell(entry.name), od::name(entry.type),
-                     csv_cell(cells.value), csv_cell(cells.unit),
-                     entry.bytes ? "hex:" + to_hex(*entry.bytes) : std::string(), csv_cell(left_out));
+  return formatted("{},0x{:04X},0x{:02X},{},{},{},{},{},{},{}\n", backup.identity.node, entry.object.index,
+                   entry.object.sub, csv_cell(entry.id), csv_cell(entry.name), od::name(entry.type),
+                   csv_cell(cells.value), csv_cell(cells.unit),
+                   entry.bytes ? "hex:" + to_hex(*entry.bytes) : std::string(), csv_cell(left_out));
 }
 
 /// Reads the rows of a table.
@@ -58,7 +58,7 @@ class CsvBackupReader {
   Result<Backup> read() {
     if (!has("index") || (!has("raw") && !has("value")))
       return fail(Errc::file,
-                  fmt::format("{}: a table of settings has the columns index and raw or value", *file_),
+                  formatted("{}: a table of settings has the columns index and raw or value", *file_),
                   "`backup --format csv` writes one");
     Backup out;
     for (const auto& row : table_->rows) {
@@ -84,9 +84,9 @@ class CsvBackupReader {
     if (cell("node").empty()) return {};
     const auto number = parse_digits(cell("node"), 10);
     if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
-      return refuse(fmt::format("'{}' is not a node-ID", clip(cell("node"), 40)), "1 to 127");
+      return refuse(formatted("'{}' is not a node-ID", clip(cell("node"), 40)), "1 to 127");
     if (node != 0 && node != *number)
-      return refuse(fmt::format("is of node {}, the rows before are of node {}", *number, node),
+      return refuse(formatted("is of node {}, the rows before are of node {}", *number, node),
                     "a table holds the settings of one drive");
     node = static_cast<std::uint8_t>(*number);
     return {};
@@ -94,9 +94,9 @@ class CsvBackupReader {
 
   Result<void> read_row(Backup::Entry& entry) const {
     auto written = std::string(cell("index"));
-    if (!cell("sub").empty()) written += fmt::format(":{}", cell("sub"));
+    if (!cell("sub").empty()) written += formatted(":{}", cell("sub"));
     const auto object = parse_object_address(written);
-    if (!object) return refuse(fmt::format("'{}' is not an index and sub-index", written), "0x2005,0x01");
+    if (!object) return refuse(formatted("'{}' is not an index and sub-index", written), "0x2005,0x01");
     entry.object = *object;
     const auto target = drive::target_at(profile_, *object);
     if (cell("raw").empty() && cell("value").empty()) {
@@ -111,13 +111,13 @@ class CsvBackupReader {
     const auto raw = cell("raw");
     entry.bytes = parse_hex_bytes(starts_with_nocase(raw, "hex:") ? raw.substr(4) : raw);
     if (!entry.bytes)
-      return refuse(fmt::format("raw: '{}' is not hexadecimal bytes", clip(raw, 40)), "hex:58 02");
+      return refuse(formatted("raw: '{}' is not hexadecimal bytes", clip(raw, 40)), "hex:58 02");
     return check_value(entry, target);
   }
 
   std::string quantity() const {
     return cell("unit").empty() ? std::string(cell("value"))
-                                : fmt::format("{} {}", cell("value"), cell("unit"));
+                                : formatted("{} {}", cell("value"), cell("unit"));
   }
 
   Result<Bytes> bytes_of(const drive::Meaning& meaning) const {
@@ -134,7 +134,7 @@ class CsvBackupReader {
                     "give its type (column type: i16, i32 …), or raw bytes");
     auto sized = type ? drive::fitted(meaning, od::size_of(*type).value_or(0)) : meaning;
     auto bytes = bytes_of(sized);
-    if (!bytes) return refuse(fmt::format("value: {}", bytes.error().message), bytes.error().hint);
+    if (!bytes) return refuse(formatted("value: {}", bytes.error().message), bytes.error().hint);
     entry.bytes = std::move(*bytes);
     return {};
   }
@@ -148,13 +148,12 @@ class CsvBackupReader {
     if (cells.value.empty() || (trim(cells.value) == cell("value") && cells.unit == cell("unit"))) return {};
     const auto bytes = bytes_of(meaning);
     if (bytes && *bytes == *entry.bytes) return {};
-    return refuse(fmt::format("value {} and raw {} ({}) differ", quantity(), cell("raw"), cells.value),
+    return refuse(formatted("value {} and raw {} ({}) differ", quantity(), cell("raw"), cells.value),
                   "correct one of them, and empty the other");
   }
 
   tl::unexpected<Error> refuse(std::string_view what, std::string hint) const {
-    auto error =
-        fail(Errc::file, fmt::format("{}:{}: {}", *file_, row_->line, what), std::move(hint)).value();
+    auto error = fail(Errc::file, formatted("{}:{}: {}", *file_, row_->line, what), std::move(hint)).value();
     error.line = row_->line;
     return fail(std::move(error));
   }

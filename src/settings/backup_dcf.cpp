@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <cctype>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
@@ -38,8 +38,8 @@ std::optional<std::uint32_t> kbps_of(const drive::Profile& profile, const Backup
 void set_time(std::string_view iso, od::DcfSettings& out) {
   const auto hour = iso.size() < 16 ? std::nullopt : parse_digits(iso.substr(11, 2), 10);
   if (!hour) return;
-  out.date = fmt::format("{}-{}-{}", iso.substr(5, 2), iso.substr(8, 2), iso.substr(0, 4));
-  out.time = fmt::format("{:02}:{}{}", (*hour + 11) % 12 + 1, iso.substr(14, 2), *hour < 12 ? "AM" : "PM");
+  out.date = formatted("{}-{}-{}", iso.substr(5, 2), iso.substr(8, 2), iso.substr(0, 4));
+  out.time = formatted("{:02}:{}{}", (*hour + 11) % 12 + 1, iso.substr(14, 2), *hour < 12 ? "AM" : "PM");
 }
 
 /// The values of the text, read again.
@@ -61,10 +61,10 @@ bool fits_a_dcf(const od::Value& value) {
 
 std::string missing(const drive::Profile& profile, const Backup& backup, const Backup::Entry& entry) {
   const auto range = range_missed(profile, backup.identity.node, entry.object, *entry.bytes);
-  return fmt::format("{} {} {} ({}): use JSON to keep it", to_string(entry.object), entry.name,
-                     range.empty() ? std::string("cannot be stored in a DCF unchanged")
-                                   : fmt::format("is outside of its limits {} and not in the DCF", range),
-                     entry.bytes->empty() ? std::string("\"\"") : to_hex(*entry.bytes));
+  return formatted("{} {} {} ({}): use JSON to keep it", to_string(entry.object), entry.name,
+                   range.empty() ? std::string("cannot be stored in a DCF unchanged")
+                                 : formatted("is outside of its limits {} and not in the DCF", range),
+                   entry.bytes->empty() ? std::string("\"\"") : to_hex(*entry.bytes));
 }
 
 }  // namespace
@@ -72,18 +72,18 @@ std::string missing(const drive::Profile& profile, const Backup& backup, const B
 Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup,
                              const std::string& file_name, std::vector<std::string>& notices) {
   if (profile.data_sheet.empty())
-    return fail(Errc::usage, fmt::format("{} has no data sheet (EDS) to make a DCF of", profile.family),
+    return fail(Errc::usage, formatted("{} has no data sheet (EDS) to make a DCF of", profile.family),
                 "use --format json, csv or batch");
   const auto eds = od::read_sheet_file(profile.data_sheet.string());
   if (!eds) return fail(eds.error());
   if (od::is_xml(*eds))
     return fail(Errc::usage,
-                fmt::format("{} is an ESI, and a DCF is made of an EDS", profile.data_sheet.string()),
+                formatted("{} is an ESI, and a DCF is made of an EDS", profile.data_sheet.string()),
                 "use --format json, csv or batch");
   od::DcfSettings settings;
   settings.file_name = file_name;
   settings.node_id = backup.identity.node;
-  settings.node_name = fmt::format("Node {}", backup.identity.node);
+  settings.node_name = formatted("Node {}", backup.identity.node);
   settings.kbps = kbps_of(profile, backup);
   set_time(backup.time, settings);
   for (const auto& entry : backup.entries) {
@@ -126,8 +126,8 @@ Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, s
     entry.line = value.line;
     auto bytes = od::encode(value.type, value.value.for_node(dcf->node_id != 0 ? dcf->node_id : node));
     if (!bytes) {
-      out.unusable.push_back(fail(Errc::file, fmt::format("{}:{}: {}: {}", file, value.line,
-                                                          to_string(value.object), bytes.error().message))
+      out.unusable.push_back(fail(Errc::file, formatted("{}:{}: {}: {}", file, value.line,
+                                                        to_string(value.object), bytes.error().message))
                                  .value());
       continue;
     }

@@ -1,8 +1,8 @@
+#include "base/format.hpp"
 #include "settings/backup_formats.hpp"
 #include "show/field_reader.hpp"
 #include "show/identity.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <unordered_set>
 
@@ -45,7 +45,7 @@ session::Identity read_identity(const Value& record, std::uint8_t node, show::Fi
 }
 
 Result<Backup::Entry> read_entry(const Value& record, std::uint32_t line, std::string_view file) {
-  const auto where = fmt::format("{}:{}", file, line);
+  const auto where = formatted("{}:{}", file, line);
   show::FieldReader fields(record, where);
   Backup::Entry out;
   out.line = line;
@@ -83,14 +83,14 @@ std::uint32_t first_entry_line(std::string_view text) {
 Result<void> read_entries(const Value& document, std::uint32_t line, std::string_view file, Backup& out) {
   const auto* list = report::find(document, "entries");
   const auto* entries = list == nullptr ? nullptr : std::get_if<List>(&list->data());
-  if (entries == nullptr) return fail(Errc::file, fmt::format("{}: 'entries' is missing or wrong", file));
+  if (entries == nullptr) return fail(Errc::file, formatted("{}: 'entries' is missing or wrong", file));
   std::unordered_set<ObjectAddress> seen;
   for (const auto& record : *entries) {
     auto entry = read_entry(record, line++, file);
     if (!entry) return fail(entry.error());
     if (!seen.insert(entry->object).second)
       return fail(Errc::file,
-                  fmt::format("{}:{}: {} appears twice", file, entry->line, to_string(entry->object)));
+                  formatted("{}:{}: {} appears twice", file, entry->line, to_string(entry->object)));
     out.entries.push_back(std::move(*entry));
   }
   return {};
@@ -102,8 +102,8 @@ std::string checksum(const Backup& backup) {
   Checksum sum;
   sum.add(backup.family);
   for (const auto& entry : backup.entries)
-    sum.add(fmt::format("\n{} {} {} {}", to_string(entry.object), od::name(entry.type),
-                        entry.bytes ? to_hex(*entry.bytes, "") : "-", entry.left_out));
+    sum.add(formatted("\n{} {} {} {}", to_string(entry.object), od::name(entry.type),
+                      entry.bytes ? to_hex(*entry.bytes, "") : "-", entry.left_out));
   return sum.text();
 }
 
@@ -130,11 +130,11 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   if (!document) return fail(document.error());
   show::FieldReader fields(*document, file);
   const auto version = fields.number("servoctl_backup", true);
-  if (!version) return fail(Errc::file, fmt::format("{}: this is not a servoctl backup", file));
+  if (!version) return fail(Errc::file, formatted("{}: this is not a servoctl backup", file));
   if (*version > static_cast<std::uint64_t>(kBackupVersion))
     return fail(Errc::file,
-                fmt::format("{}: its version {} is newer than this program supports ({})", file, *version,
-                            kBackupVersion),
+                formatted("{}: its version {} is newer than this program supports ({})", file, *version,
+                          kBackupVersion),
                 "read it with the servoctl that wrote it, or a newer one");
   Backup out;
   out.tool = fields.text("tool");
@@ -149,10 +149,9 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   if (const auto read = read_entries(*document, first_entry_line(text), file, out); !read)
     return fail(read.error());
   if (sum != checksum(out))
-    return fail(
-        Errc::file,
-        fmt::format("{}: its checksum does not match: the file was changed after it was written", file),
-        "make the backup again");
+    return fail(Errc::file,
+                formatted("{}: its checksum does not match: the file was changed after it was written", file),
+                "make the backup again");
   out.proven = true;
   return out;
 }

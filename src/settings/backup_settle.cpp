@@ -1,7 +1,7 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 
+#include "base/format.hpp"
 #include "base/pdo_index.hpp"
 #include "session/communication_order.hpp"
 #include "settings/backup_formats.hpp"
@@ -19,7 +19,7 @@ bool is_of_procedure(ObjectAddress object) {
 
 tl::unexpected<Error> refuse(const std::string& file, const Backup::Entry& entry, std::string_view what,
                              std::string hint) {
-  auto error = fail(Errc::file, fmt::format("{}:{}: {} {}", file, entry.line, to_string(entry.object), what),
+  auto error = fail(Errc::file, formatted("{}:{}: {} {}", file, entry.line, to_string(entry.object), what),
                     std::move(hint))
                    .value();
   error.line = entry.line;
@@ -37,8 +37,8 @@ std::string_view reason_of(const std::map<ObjectAddress, std::string_view>& reas
 Result<Bytes> resized(const Backup::Entry& entry, od::DataType type) {
   const auto value = od::decode(entry.type, *entry.bytes);
   if (!value || !od::is_integer(entry.type) || !od::is_integer(type))
-    return fail(Errc::file, fmt::format("has {} bytes, and {} is of another length", entry.bytes->size(),
-                                        od::name(type)));
+    return fail(Errc::file,
+                formatted("has {} bytes, and {} is of another length", entry.bytes->size(), od::name(type)));
   return od::encode(type, *value);
 }
 
@@ -49,7 +49,7 @@ Result<void> settle_value(Backup::Entry& entry, const drive::Target& target, con
   if (size && *size != entry.bytes->size()) {
     auto bytes = resized(entry, meaning.type);
     if (!bytes)
-      return refuse(file, entry, fmt::format("({}): {}", name_of(target), bytes.error().message),
+      return refuse(file, entry, formatted("({}): {}", name_of(target), bytes.error().message),
                     "is it a file of this drive family?");
     entry.bytes = std::move(*bytes);
   }
@@ -68,11 +68,11 @@ void settle(Backup& backup, const std::string& file, const drive::Profile& profi
   const auto take = [&](Backup::Entry& entry) -> Result<void> {
     const auto target = drive::target_at(&profile, entry.object);
     if (target.entry == nullptr && target.parameter == nullptr)
-      return refuse(file, entry, fmt::format("is unknown to {}", profile.family),
+      return refuse(file, entry, formatted("is unknown to {}", profile.family),
                     "is it a file of this drive family? remove the entry when it is");
     if (!procedure || !is_of_procedure(entry.object))
       if (const auto first = entries.find(entry.object); first != entries.end())
-        return refuse(file, entry, fmt::format("appears again, first in {}", first->second.line),
+        return refuse(file, entry, formatted("appears again, first in {}", first->second.line),
                       "remove one of them");
     entry.id = target.parameter != nullptr ? target.parameter->id : std::string();
     entry.name = target.parameter != nullptr ? target.parameter->name : target.label();

@@ -1,8 +1,8 @@
 #include "settings/before_file.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "session/open_bus.hpp"
 #include "settings/restore_journal.hpp"
 #include "show/identity.hpp"
@@ -22,7 +22,7 @@ bool is_file(const fs::path& path) {
 fs::path lock_of(const fs::path& before) { return journal_of(before).string() + ".lock"; }
 
 tl::unexpected<Error> refuse_second(const std::string& title, std::uint8_t node) {
-  return fail(Errc::refused, fmt::format("another servoctl is restoring {} into node {}", title, node),
+  return fail(Errc::refused, formatted("another servoctl is restoring {} into node {}", title, node),
               "wait until it ends, or find it with `ps`");
 }
 
@@ -32,17 +32,17 @@ Origin origin_of(const show::Desk& desk, const Backup& backup, const session::Id
   auto what = show::other_kind(backup.identity, drive);
   const bool same_serial = drive.serial.value_or(0) != 0 && backup.identity.serial == drive.serial;
   if (what.empty() && !same_serial) what = show::change_of(backup.identity, drive);
-  if (!what.empty()) return {Origin::Kind::other, fmt::format("{} differs", what), backup.bus};
+  if (!what.empty()) return {Origin::Kind::other, formatted("{} differs", what), backup.bus};
   const bool same_bus = session::canonical_url(backup.bus) == session::canonical_url(desk.session->url());
   if (same_serial || same_bus) return {};
-  return {Origin::Kind::elsewhere, fmt::format("it is of the drive on {}", backup.bus), backup.bus};
+  return {Origin::Kind::elsewhere, formatted("it is of the drive on {}", backup.bus), backup.bus};
 }
 
 std::vector<fs::path> before_names(const fs::path& usual) {
   std::vector<fs::path> out{usual};
   for (int drive = 2; drive <= kMostDrives; ++drive)
     out.push_back(usual.parent_path() /
-                  fmt::format("{}-drive-{}{}", usual.stem().string(), drive, usual.extension().string()));
+                  formatted("{}-drive-{}{}", usual.stem().string(), drive, usual.extension().string()));
   return out;
 }
 
@@ -60,7 +60,7 @@ class BeforeFileSearch {
     if (const auto clear = refuse_doubt(); !clear) return fail(clear.error());
     if (const auto free = choose(free_); !free || *free) return finish(free);
     return fail(Errc::file,
-                fmt::format("{} has a file of old values of {} drives already", title_, kMostDrives),
+                formatted("{} has a file of old values of {} drives already", title_, kMostDrives),
                 "move those that are not needed any more into another folder");
   }
 
@@ -75,8 +75,8 @@ class BeforeFileSearch {
     // What is wrong with it as well is told first.
     if (const auto journal = read_journal(*desk_, journal_of(name)); !journal) return fail(journal.error());
     return fail(Errc::file,
-                fmt::format("{} cannot be read: nothing tells of which drive {} is", name.string(),
-                            journal_of(name).string()),
+                formatted("{} cannot be read: nothing tells of which drive {} is", name.string(),
+                          journal_of(name).string()),
                 "put the file of the old values back, or delete the journal if it is not to be resumed");
   }
 
@@ -125,12 +125,11 @@ class BeforeFileSearch {
       if (!*lock) continue;
       return fail(drive_error(
           Errc::refused, drive_.node,
-          fmt::format("a restore of {} was interrupted on {}, and nothing tells whether this is that drive",
-                      title_, other.origin.bus),
-          fmt::format(
-              "where it is, `restore {} -n {} --force` restores the old values; where it is not, move "
-              "that file and its journal into another folder",
-              other.path.string(), drive_.node)));
+          formatted("a restore of {} was interrupted on {}, and nothing tells whether this is that drive",
+                    title_, other.origin.bus),
+          formatted("where it is, `restore {} -n {} --force` restores the old values; where it is not, move "
+                    "that file and its journal into another folder",
+                    other.path.string(), drive_.node)));
     }
     return {};
   }

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "drive/bitrate.hpp"
 #include "session/scan.hpp"
 #include "session/stretch.hpp"
@@ -96,8 +97,8 @@ class SwitchRun {
 
   Result<void> wait_until_off() {
     desk_->tell(
-        fmt::format("switch all drives of the bus off and on again now: they are waited for at {} for {}\n",
-                    bitrate_text(plan_->bitrate), to_string(options_->patience)));
+        formatted("switch all drives of the bus off and on again now: they are waited for at {} for {}\n",
+                  bitrate_text(plan_->bitrate), to_string(options_->patience)));
     while (session_->now() < deadline_) {
       const auto there = session::scan(*session_, before_);
       if (!there && there.error().code == Errc::interrupted) return fail(there.error());
@@ -109,8 +110,8 @@ class SwitchRun {
     }
     return fail(drive_error(
         Errc::negative, before_.front(),
-        fmt::format("still answers: the drives were not switched off, and {} stays at {}",
-                    plan_->link->name(), session::settings_text(plan_->before)),
+        formatted("still answers: the drives were not switched off, and {} stays at {}", plan_->link->name(),
+                  session::settings_text(plan_->before)),
         "what was written holds from their next start; the same line waits again, a plan with --resume"));
   }
 
@@ -154,8 +155,8 @@ class SwitchRun {
   Result<void> look_at_old() {
     const auto name = plan_->link->name();
     auto error = drive_error(Errc::timeout, after_.front(),
-                             fmt::format("no drive answers at {}", bitrate_text(plan_->bitrate)),
-                             fmt::format("{} has it now; switch the drives off and on, then `scan`", name));
+                             formatted("no drive answers at {}", bitrate_text(plan_->bitrate)),
+                             formatted("{} has it now; switch the drives off and on, then `scan`", name));
     std::uint8_t who = 0;
     const auto back = take_back(*session_, *plan_, [&] {
       const auto there = session::scan(*session_, before_);
@@ -168,21 +169,20 @@ class SwitchRun {
     const auto old = old_bitrate_text(*plan_);
     return fail(drive_error(
         Errc::negative, who,
-        fmt::format(
-            "still answers at {}: the restart did not put its new bitrate in force; {} is at {} again", old,
-            name, old),
+        formatted("still answers at {}: the restart did not put its new bitrate in force; {} is at {} again",
+                  old, name, old),
         over_bus_ ? "add --wait 5min: it asks for switching off and on" : "switch the drives off and on"));
   }
 
   Error left_alone(Error error) const {
-    error.message = fmt::format("the drives start at {} now, and {} could not follow: {}",
-                                bitrate_text(plan_->bitrate), plan_->link->name(), error.message);
+    error.message = formatted("the drives start at {} now, and {} could not follow: {}",
+                              bitrate_text(plan_->bitrate), plan_->link->name(), error.message);
     return error;
   }
 
   Error somewhere(Error error) const {
-    error.message = fmt::format("{} is at {} now; where the drives are was not seen: {}", plan_->link->name(),
-                                bitrate_text(plan_->bitrate), error.message);
+    error.message = formatted("{} is at {} now; where the drives are was not seen: {}", plan_->link->name(),
+                              bitrate_text(plan_->bitrate), error.message);
     if (error.hint.empty()) error.hint = "`scan` shows who answers";
     return error;
   }
@@ -220,25 +220,25 @@ Result<BitrateSwitch> plan_switch(show::Desk& desk, std::unique_ptr<can::LinkCon
   if (!others) return fail(others.error());
   if (!others->empty())
     out->why_not =
-        fmt::format("node{} {} would be left at {}: all on the bus have to be named, and to answer",
-                    others->size() == 1 ? "" : "s", fmt::join(*others, ", "), old_bitrate_text(*out));
+        formatted("node{} {} would be left at {}: all on the bus have to be named, and to answer",
+                  others->size() == 1 ? "" : "s", fmt::join(*others, ", "), old_bitrate_text(*out));
   return out;
 }
 
 std::string switch_text(const BitrateSwitch& plan) {
-  return fmt::format("{}, and {} goes to {} (from {})",
-                     restarts_over_bus(plan)
-                         ? fmt::format("then all are restarted at once (NMT {})", drive::name(plan.restart))
-                         : std::string("then all have to be switched off and on"),
-                     plan.link->name(), bitrate_text(plan.bitrate), session::settings_text(plan.before));
+  return formatted("{}, and {} goes to {} (from {})",
+                   restarts_over_bus(plan)
+                       ? formatted("then all are restarted at once (NMT {})", drive::name(plan.restart))
+                       : std::string("then all have to be switched off and on"),
+                   plan.link->name(), bitrate_text(plan.bitrate), session::settings_text(plan.before));
 }
 
 std::string switch_commands(const BitrateSwitch& plan) {
   const auto& name = plan.link->name();
-  return fmt::format(
+  return formatted(
       "{}, `{}`, `{}`",
-      restarts_over_bus(plan) ? fmt::format("{} (NMT {} to all)", session::restart_frame(0, plan.restart),
-                                            drive::name(plan.restart))
+      restarts_over_bus(plan) ? formatted("{} (NMT {} to all)", session::restart_frame(0, plan.restart),
+                                          drive::name(plan.restart))
                               : std::string("when the drives are off"),
       can::ip_command(name, {.up = false}), can::ip_command(name, {.up = true, .bitrate = plan.bitrate}));
 }
@@ -246,7 +246,7 @@ std::string switch_commands(const BitrateSwitch& plan) {
 void tell_bitrate_by_hand(show::Desk& desk, const BitrateSwitch& plan,
                           std::span<const AddressChange> changes) {
   if (plan.link != nullptr && !plan.why_not.empty())
-    desk.notices.push_back(fmt::format("{} is left alone: {}", plan.link->name(), plan.why_not));
+    desk.notices.push_back(formatted("{} is left alone: {}", plan.link->name(), plan.why_not));
   for (const auto& line : bitrate_steps(desk.session->url(), plan.bitrate, family_of(changes)))
     desk.notices.push_back(line);
 }

@@ -1,8 +1,8 @@
 #include "settings/bus_bitrate.hpp"
 
-#include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "drive/bitrate.hpp"
 
 namespace servoctl::settings {
@@ -27,7 +27,7 @@ Result<BitrateSwitch> plan_bus_bitrate(std::unique_ptr<can::LinkControl> link, s
   out.link = std::move(link);
   out.before = *now;
   if (now->bitrate == bitrate)
-    out.why_not = fmt::format("it has {} already", drive::bitrate_text(bitrate));
+    out.why_not = formatted("it has {} already", drive::bitrate_text(bitrate));
   else if (may_change == false)
     out.why_not = "it needs the right CAP_NET_ADMIN: " + can::right_command();
   return out;
@@ -50,14 +50,14 @@ Result<bool> take_back(session::Session& session, BitrateSwitch& plan, const std
 }
 
 std::string lss_switch_text(const BitrateSwitch& plan) {
-  return fmt::format("{} goes with them to {} (from {})", plan.link->name(),
-                     drive::bitrate_text(plan.bitrate), session::settings_text(plan.before));
+  return formatted("{} goes with them to {} (from {})", plan.link->name(), drive::bitrate_text(plan.bitrate),
+                   session::settings_text(plan.before));
 }
 
 std::string lss_switch_commands(const BitrateSwitch& plan) {
   const auto& name = plan.link->name();
-  return fmt::format("`{}`, `{}`", can::ip_command(name, {.up = false}),
-                     can::ip_command(name, {.up = true, .bitrate = plan.bitrate}));
+  return formatted("`{}`, `{}`", can::ip_command(name, {.up = false}),
+                   can::ip_command(name, {.up = true, .bitrate = plan.bitrate}));
 }
 
 }  // namespace servoctl::settings

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
@@ -34,7 +35,7 @@ Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const dri
     error.message = "the object's size is not known, and reading it failed: " + error.message;
     const bool absent = error.abort_code == canopen::sdo_abort::kNoObject;
     error.hint = desk.profile == nullptr ? "give the type: --type i32, or the drive family: -d FAMILY"
-                 : absent ? fmt::format("`objects -d {}` lists the objects it has", desk.profile->family)
+                 : absent ? formatted("`objects -d {}` lists the objects it has", desk.profile->family)
                           : std::string("say the type: --type i32");
     return fail(std::move(error));
   }
@@ -42,11 +43,11 @@ Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const dri
   if (!learned)
     return fail(
         Errc::negative,
-        fmt::format("the object has {} bytes, which does not fit {}", bytes->size(), od::name(meaning.type)),
+        formatted("the object has {} bytes, which does not fit {}", bytes->size(), od::name(meaning.type)),
         "say the type: --type i32");
   if (learned->type != meaning.type || !meaning.type_known)
-    desk.notices.push_back(fmt::format("node {}, object {}: type taken as {} from its length", node,
-                                       to_string(target.address), od::name(learned->type)));
+    desk.notices.push_back(formatted("node {}, object {}: type taken as {} from its length", node,
+                                     to_string(target.address), od::name(learned->type)));
   return *learned;
 }
 
@@ -67,7 +68,7 @@ void warn_of_gear(show::Desk& desk, std::uint8_t node, drive::Measure measure) {
     }
   if (ids.empty()) return;
   const auto names = fmt::to_string(fmt::join(ids, ", "));
-  const auto notice = fmt::format(
+  const auto notice = formatted(
       "node {}: the unit is converted by {}, valid only if the drive was restarted after they changed", node,
       names);
   if (std::find(desk.notices.begin(), desk.notices.end(), notice) == desk.notices.end())
@@ -101,9 +102,9 @@ Result<void> prove_unit(const session::DriveUnits& own, const drive::Target& tar
   if (!own.proves(target))
     return fail(
         Errc::usage,
-        fmt::format("'{}': the unit of this object is not known: neither the drive's data nor the drive "
-                    "(60A8h, 60A9h, 60AAh) states it",
-                    text),
+        formatted("'{}': the unit of this object is not known: neither the drive's data nor the drive "
+                  "(60A8h, 60A9h, 60AAh) states it",
+                  text),
         "write the plain number that the drive takes; its manual gives the unit");
   own.apply(target, meaning);
   return {};
@@ -156,7 +157,7 @@ Error with_password_hint(const show::Desk& desk, const Change& change, const Wri
   const auto* password = desk.profile->parameter(store.unlock);
   const bool vendor_object = change.target.address.index >= 0x2000 && change.target.address.index < 0x6000;
   if (password == nullptr || !password->object || !store.unlock_open || !vendor_object) return error;
-  error.hint = fmt::format("it may be locked by {}: add --unlock", password->id);
+  error.hint = formatted("it may be locked by {}: add --unlock", password->id);
   return error;
 }
 
@@ -301,8 +302,8 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, co
     if (!written[i]) desk.errors.push_back(with_password_hint(desk, changes[i], options, written[i].error()));
     if (written[i] && written[i]->answer_lost)
       desk.notices.push_back(
-          fmt::format("node {}, object {}: the answer to the write was lost; the value read back is correct",
-                      changes[i].node, to_string(changes[i].target.address)));
+          formatted("node {}, object {}: the answer to the write was lost; the value read back is correct",
+                    changes[i].node, to_string(changes[i].target.address)));
   }
   return table;
 }

@@ -1,8 +1,8 @@
 #include "settings/comparison.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/pdo_index.hpp"
 #include "drive/naming.hpp"
 #include "show/reading.hpp"
@@ -28,7 +28,7 @@ Shown show(const drive::Profile* profile, const Side& side, ObjectAddress object
   const auto* parameter = reading.target.parameter;
   const auto index = parameter != nullptr && parameter->mirror ? parameter->mirror->index : object.index;
   const bool fields = index < 0x2000 && found->second.size() == 4 && decoded.unit.empty();
-  auto text = fields                  ? fmt::format("0x{:08X}", load_le(found->second))
+  auto text = fields                  ? formatted("0x{:08X}", load_le(found->second))
               : found->second.empty() ? std::string("\"\"")
                                       : decoded.text;
   const auto& shown = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
@@ -89,7 +89,7 @@ void leave_unreachable(show::Desk& desk, const drive::Profile* profile, Side& si
       side.values, [&](const auto& value) { return !profile->rules.modbus.register_of(value.first); });
   if (left > 0)
     desk.notices.push_back(
-        fmt::format("{} values of {} have no Modbus register: they are not compared", left, side.title));
+        formatted("{} values of {} have no Modbus register: they are not compared", left, side.title));
 }
 
 bool is_address(const drive::Profile* profile, ObjectAddress object) {
@@ -159,8 +159,8 @@ Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, 
 }
 
 Error differences_error(const Comparison& comparison, const Side& a, const Side& b) {
-  return make_error(Errc::negative, fmt::format("{} of {} values differ between {} and {}",
-                                                comparison.different, comparison.compared, a.title, b.title));
+  return make_error(Errc::negative, formatted("{} of {} values differ between {} and {}",
+                                              comparison.different, comparison.compared, a.title, b.title));
 }
 
 }  // namespace servoctl::settings

@@ -1,6 +1,6 @@
-#include <fmt/format.h>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/pdo_index.hpp"
 #include "session/write_plan.hpp"
 #include "settings/backup_formats.hpp"
@@ -50,7 +50,7 @@ std::vector<std::string> lines_between(const drive::Profile* profile, const Side
     const auto line =
         both && ours->second != data ? write_line(profile, a.node, object, data) : std::string();
     if (!both && whole)
-      comments.push_back(fmt::format("# {} alone has {}", comment_text(b.title), to_string(object)));
+      comments.push_back(formatted("# {} alone has {}", comment_text(b.title), to_string(object)));
     else if (!line.empty() && is_address(profile, object))
       comments.push_back("# not changed: " + line);
     else if (both)
@@ -60,11 +60,11 @@ std::vector<std::string> lines_between(const drive::Profile* profile, const Side
   for (const auto& [object, ours] : a.values) {
     if (wanted.count(object) > 0) present.emplace(object, ours);
     if (whole && b.values.count(object) == 0 && wanted.count(object) == 0)
-      comments.push_back(fmt::format("# {} alone has {}", comment_text(a.title), to_string(object)));
+      comments.push_back(formatted("# {} alone has {}", comment_text(a.title), to_string(object)));
   }
   std::vector<std::string> out;
-  if (profile != nullptr) out.push_back(fmt::format("drive {}", batch_word(profile->family)));
-  out.push_back(fmt::format("use {}", a.node));
+  if (profile != nullptr) out.push_back(formatted("drive {}", batch_word(profile->family)));
+  out.push_back(formatted("use {}", a.node));
   for (const auto& step : session::plan_writes(profile, present, wanted))
     out.push_back(commented_line(profile, a.node, step.object, step.data));
   out.insert(out.end(), comments.begin(), comments.end());

@@ -1,9 +1,9 @@
 #include "settings/dictionary_comparison.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <set>
 
+#include "base/format.hpp"
 #include "od/data_sheet.hpp"
 
 namespace servoctl::settings {
@@ -16,8 +16,7 @@ std::string text_of(const std::optional<od::NodeValue>& value) {
   if (!value) return {};
   const auto* number = std::get_if<std::uint64_t>(&value->value);
   if (!value->plus_node_id) return od::to_string(value->value);
-  return number != nullptr ? fmt::format("$NODEID+0x{:X}", *number)
-                           : "$NODEID+" + od::to_string(value->value);
+  return number != nullptr ? formatted("$NODEID+0x{:X}", *number) : "$NODEID+" + od::to_string(value->value);
 }
 
 /// What is compared of an entry, as text; empty where the sheet says nothing.
@@ -80,7 +79,7 @@ class Comparer {
  private:
   static std::string summary(const od::Entry* entry) {
     return entry == nullptr ? std::string()
-                            : fmt::format("{} {}", od::name(entry->type), od::name(entry->access));
+                            : formatted("{} {}", od::name(entry->type), od::name(entry->access));
   }
 
   void add(ObjectAddress address, const std::string& name, std::string_view field, std::string a,
@@ -111,16 +110,16 @@ Result<Value> compare_data_sheets(show::Desk& desk, const BackupSource& a, const
   if (!right) return fail(right.error());
   for (const auto& [source, file] : {std::pair(&a, &*left), std::pair(&b, &*right)})
     if (file->error_count() > 0)
-      desk.notices.push_back(fmt::format("{0}: {1} errors; `eds check {0}` lists what is not compared",
-                                         source->file, file->error_count()));
+      desk.notices.push_back(formatted("{0}: {1} errors; `eds check {0}` lists what is not compared",
+                                       source->file, file->error_count()));
   Comparer comparer(a.file, b.file);
   const auto all = addresses(left->dictionary, right->dictionary);
   for (const auto address : all)
     comparer.compare(address, left->dictionary.find(address), right->dictionary.find(address));
   const auto different = comparer.different();
   if (different > 0) {
-    desk.errors.push_back(make_error(Errc::negative, fmt::format("{} of {} entries differ between {} and {}",
-                                                                 different, all.size(), a.file, b.file)));
+    desk.errors.push_back(make_error(Errc::negative, formatted("{} of {} entries differ between {} and {}",
+                                                               different, all.size(), a.file, b.file)));
   }
   auto table = comparer.take();
   return Value(report::Record{

@@ -1,10 +1,10 @@
 #include "settings/energising.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/enabling_write.hpp"
 #include "drive/standard_objects.hpp"
@@ -34,13 +34,12 @@ Result<void> check_power(const show::Desk& desk, std::uint8_t node, ObjectAddres
   if (may_be_power(desk.profile, object, data))
     return fail(drive_error(
         Errc::refused, node, object,
-        fmt::format("without its family it is not known whether this energises the motor, and {}", no_power),
+        formatted("without its family it is not known whether this energises the motor, and {}", no_power),
         "name the family: -d FAMILY"));
   if (drive::power_parameter(desk.profile, object, data) == nullptr) return {};
   return fail(drive_error(
       Errc::refused, node, object,
-      fmt::format("this energises the motor, or sets it in motion, without the controlword, and {}",
-                  no_power),
+      formatted("this energises the motor, or sets it in motion, without the controlword, and {}", no_power),
       std::string(kOtherWay)));
 }
 
@@ -58,7 +57,7 @@ std::vector<std::pair<ObjectAddress, const drive::PowerParameter*>> power_values
 }
 
 void tell_power(show::Desk& desk, std::uint8_t node, const drive::PowerParameter& parameter) {
-  desk.notices.push_back(fmt::format(
+  desk.notices.push_back(formatted(
       "node {}: its motor may get power or move without the controlword, and servoctl neither supervises nor "
       "stops it: `param set {}={} -n {}`",
       node, parameter.end, parameter.value, node));
@@ -106,7 +105,7 @@ Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) 
   for (const auto& change : changes) {
     if (!no_power.empty() && enables(change))
       return fail(
-          show::located(make_error(Errc::refused, fmt::format("this enables the drive, and {}", no_power),
+          show::located(make_error(Errc::refused, formatted("this enables the drive, and {}", no_power),
                                    std::string(kOtherWay)),
                         change.node, change.target.address));
     if (const auto possible = check_power(desk, change.node, change.target.address, change.data); !possible)
@@ -117,7 +116,7 @@ Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) 
     if (reason.empty()) reason = register_reason(desk, change);
     if (reason.empty()) continue;
     const auto question =
-        fmt::format("Write {} on node {}? {}", change.target.in_sentence(), change.node, reason);
+        formatted("Write {} on node {}? {}", change.target.in_sentence(), change.node, reason);
     if (const auto answer = desk.confirm(question); !answer) return answer;
   }
   return {};
@@ -145,13 +144,13 @@ std::string power_question(const show::Desk& desk, std::uint8_t node, const sess
   }
   std::string out;
   if (!at_once.empty())
-    out += fmt::format(
+    out += formatted(
         " Without the controlword the motor may be energised, or set in motion, by {}; `disable` may not stop it.",
         at_once);
   if (!after_restart.empty())
     out +=
-        fmt::format(" Without the controlword the motor may be energised after a restart of the drive by {}.",
-                    after_restart);
+        formatted(" Without the controlword the motor may be energised after a restart of the drive by {}.",
+                  after_restart);
   return out;
 }
 

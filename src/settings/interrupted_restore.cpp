@@ -1,8 +1,8 @@
 #include "settings/interrupted_restore.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "session/storage.hpp"
 
 namespace servoctl::settings {
@@ -21,9 +21,9 @@ class TakingUp {
     if (!found) return fail(found.error());
     if (*found && !options_->resume)
       return fail(Errc::refused,
-                  fmt::format("a restore of {} to node {} was interrupted", attempt_->title, node_),
-                  fmt::format("--resume continues it; `restore {} -n {}` restores the old values",
-                              before_->path().string(), node_));
+                  formatted("a restore of {} to node {} was interrupted", attempt_->title, node_),
+                  formatted("--resume continues it; `restore {} -n {}` restores the old values",
+                            before_->path().string(), node_));
     if (!*found && options_->resume) return fail(nothing_to_resume(*before_, attempt_->title, node_));
     if (options_->resume) return resume(**found);
     return undo();
@@ -33,9 +33,9 @@ class TakingUp {
   Result<RestoreJournal> resume(const RestoreJournal& found) {
     if (found.checksum != checksum(*attempt_->backup) || found.node != node_)
       return fail(Errc::refused,
-                  fmt::format("{} is not the file being restored to node {}", attempt_->title, node_),
-                  fmt::format("resuming needs the same values; `restore {} -n {}` restores the old ones",
-                              before_->path().string(), node_));
+                  formatted("{} is not the file being restored to node {}", attempt_->title, node_),
+                  formatted("resuming needs the same values; `restore {} -n {}` restores the old ones",
+                            before_->path().string(), node_));
     options_->choice = {.with_address = found.with_address,
                         .force = found.force,
                         .skip_invalid = options_->choice.skip_invalid};
@@ -55,7 +55,7 @@ class TakingUp {
     // What went to the flash has to go there again, but for trials: those were in the RAM alone.
     const bool keeps_trials = keeps(**undone) && worked_in_ram(*desk_->profile, **undone);
     if (keeps_trials && !options_->keep)
-      desk_->notices.push_back(fmt::format(
+      desk_->notices.push_back(formatted(
           "node {}: it worked in RAM when the restore that is undone began, so the old values go to its RAM; "
           "its flash may hold new ones: --keep writes the old ones there, too",
           node_));
@@ -70,13 +70,13 @@ class TakingUp {
     if (origin.kind == Origin::Kind::other)
       return fail(
           drive_error(Errc::refused, node_,
-                      fmt::format("{} has the old values of another drive, whose restore was interrupted: {}",
-                                  attempt_->title, origin.why),
+                      formatted("{} has the old values of another drive, whose restore was interrupted: {}",
+                                attempt_->title, origin.why),
                       "--force restores them to this one; the interrupted restore stays as it is"));
     return fail(drive_error(
         Errc::refused, node_,
-        fmt::format("{} has the old values of the drive on {}, and nothing tells whether this is that drive",
-                    attempt_->title, origin.bus),
+        formatted("{} has the old values of the drive on {}, and nothing tells whether this is that drive",
+                  attempt_->title, origin.bus),
         "--force restores them, where it is"));
   }
 
@@ -105,14 +105,13 @@ Error nothing_to_resume(const BeforeFile& before, const std::string& title, std:
       std::find_if(others.begin(), others.end(), [](const auto& one) { return one.has_journal; });
   if (other == others.end())
     return make_error(Errc::usage,
-                      fmt::format("there is nothing to resume: {} does not exist", before.journal().string()),
+                      formatted("there is nothing to resume: {} does not exist", before.journal().string()),
                       "leave --resume out");
   return drive_error(
       Errc::refused, node,
-      fmt::format("the restore of {} that was interrupted was of another drive: {}", title,
-                  other->origin.why),
-      fmt::format("leave --resume out to begin anew with this one; the old values of the other stay in {}",
-                  other->path.string()));
+      formatted("the restore of {} that was interrupted was of another drive: {}", title, other->origin.why),
+      formatted("leave --resume out to begin anew with this one; the old values of the other stay in {}",
+                other->path.string()));
 }
 
 }  // namespace servoctl::settings

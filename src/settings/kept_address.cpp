@@ -1,8 +1,8 @@
 #include "settings/kept_address.hpp"
 
-#include <fmt/format.h>
 #include <vector>
 
+#include "base/format.hpp"
 #include "drive/naming.hpp"
 #include "session/snapshot.hpp"
 #include "settings/comparison.hpp"
@@ -20,7 +20,7 @@ bool tell_kept_address(show::Desk& desk, const Backup& backup, const std::string
       objects.push_back(value.first);
   const auto read = session::read_objects(*desk.session, node, objects);
   if (!read) return false;
-  Side drive{fmt::format("node {}", node), node, {}};
+  Side drive{formatted("node {}", node), node, {}};
   for (const auto& entry : *read)
     if (entry.bytes) drive.values.emplace(entry.object, *entry.bytes);
   bool differs = false;
@@ -29,10 +29,10 @@ bool tell_kept_address(show::Desk& desk, const Backup& backup, const std::string
     differs = true;
     const auto target = drive::target_at(desk.profile, object);
     desk.notices.push_back(
-        fmt::format("node {}: {} stays {}; {} has {}, which only `restore --with-address` writes", node,
-                    desk.chinese ? target.label_zh() : target.label(),
-                    value_text(desk.profile, drive, object, desk.chinese), title,
-                    value_text(desk.profile, wanted, object, desk.chinese)));
+        formatted("node {}: {} stays {}; {} has {}, which only `restore --with-address` writes", node,
+                  desk.chinese ? target.label_zh() : target.label(),
+                  value_text(desk.profile, drive, object, desk.chinese), title,
+                  value_text(desk.profile, wanted, object, desk.chinese)));
   }
   return differs;
 }

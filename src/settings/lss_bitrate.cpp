@@ -1,10 +1,10 @@
 #include "settings/lss_bitrate.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "canopen/node_id.hpp"
 #include "drive/bitrate.hpp"
 #include "session/addressing.hpp"
@@ -33,7 +33,7 @@ constexpr Duration kLookPause = std::chrono::seconds(1);
 /// What holds after one of several slaves did not do as the others.
 std::string not_activated(const LssRequest& request, std::string_view more) {
   const bool stores = request.answer == LssService::store;
-  return fmt::format(
+  return formatted(
       "nothing was activated{}; {}",
       stores ? ", but slaves that confirmed have stored it, and take it when they are switched on" : "",
       more);
@@ -52,11 +52,11 @@ Result<std::size_t> order_all(LssDialogue& lss, const LssRequest& request, std::
   if (refused != answers->end())
     return fail(
         Errc::negative,
-        fmt::format("an LSS slave of {} refuses: {}", answers->size(), canopen::lss_error_text(*refused)),
+        formatted("an LSS slave of {} refuses: {}", answers->size(), canopen::lss_error_text(*refused)),
         not_activated(request, "`lss inquire` shows what each slave is"));
   if (answers->size() < expected)
     return fail(Errc::negative,
-                fmt::format("of {} LSS slaves {} confirmed what was set", expected, answers->size()),
+                formatted("of {} LSS slaves {} confirmed what was set", expected, answers->size()),
                 not_activated(request, "one that does not support a request may leave it unanswered"));
   return answers->size();
 }
@@ -123,14 +123,14 @@ class LssBitrateRun {
   Result<void> follow() {
     const auto delay = std::chrono::milliseconds(*change_->delay_ms);
     const auto& name = plan_->link->name();
-    desk_->tell(fmt::format("{} and the slaves go to {} in {}\n", name, bitrate_text(plan_->bitrate),
-                            to_string(Duration(delay))));
+    desk_->tell(formatted("{} and the slaves go to {} in {}\n", name, bitrate_text(plan_->bitrate),
+                          to_string(Duration(delay))));
     pause(*activated_ + delay);
     const auto set = take_to(*session_, *plan_, plan_->bitrate);
     if (!set)
       return fail(set.error().code,
-                  fmt::format("the LSS slaves are at {} now, and {} could not follow: {}",
-                              bitrate_text(plan_->bitrate), name, set.error().message),
+                  formatted("the LSS slaves are at {} now, and {} could not follow: {}",
+                            bitrate_text(plan_->bitrate), name, set.error().message),
                   set.error().hint);
     pause(*activated_ + 2 * delay + kTalkAgain);
     return {};
@@ -165,12 +165,12 @@ class LssBitrateRun {
     if (there == 0) return look_at_old();
     if (there < out_.slaves)
       return fail(
-          Errc::timeout, fmt::format("of {} LSS slaves {} answer at {}", out_.slaves, there, rate),
-          fmt::format("{} is at {} now; one that kept its bitrate disturbs the rest: switch it off, and on "
-                      "where it has stored the new one",
-                      name, rate));
-    desk_->notices.push_back(fmt::format("{} went with them: {} (it was at {})", name, rate,
-                                         session::settings_text(plan_->before)));
+          Errc::timeout, formatted("of {} LSS slaves {} answer at {}", out_.slaves, there, rate),
+          formatted("{} is at {} now; one that kept its bitrate disturbs the rest: switch it off, and on "
+                    "where it has stored the new one",
+                    name, rate));
+    desk_->notices.push_back(
+        formatted("{} went with them: {} (it was at {})", name, rate, session::settings_text(plan_->before)));
     return {};
   }
 
@@ -181,22 +181,22 @@ class LssBitrateRun {
     if (back && *back)
       return fail(
           Errc::negative,
-          fmt::format("LSS slaves still answer at {0}: the activation did not put {1} in force; {2} is at "
-                      "{0} again",
-                      old_bitrate_text(*plan_), rate, name),
+          formatted("LSS slaves still answer at {0}: the activation did not put {1} in force; {2} is at "
+                    "{0} again",
+                    old_bitrate_text(*plan_), rate, name),
           change_->keep ? "what was stored holds when they are switched off and on: then `bus up` takes "
                           "the interface there"
                         : "one that does not support it may ignore it: --keep, and switch them off and on");
     return fail(
-        Errc::timeout, fmt::format("no LSS slave answers at {}", rate),
-        back ? fmt::format("{} has it now; switch the drives off and on, then `lss inquire` or `scan`", name)
+        Errc::timeout, formatted("no LSS slave answers at {}", rate),
+        back ? formatted("{} has it now; switch the drives off and on, then `lss inquire` or `scan`", name)
              : std::string("`bus status` shows the interface"));
   }
 
   Error not_looked_for(const Error& error) const {
     return make_error(error.code,
-                      fmt::format("{} is at {} now; whether the LSS slaves are was not seen: {}",
-                                  plan_->link->name(), bitrate_text(plan_->bitrate), error.message),
+                      formatted("{} is at {} now; whether the LSS slaves are was not seen: {}",
+                                plan_->link->name(), bitrate_text(plan_->bitrate), error.message),
                       "`lss inquire` or `scan` shows who answers");
   }
 
@@ -235,7 +235,7 @@ Result<BitrateSwitch> plan_lss_switch(std::unique_ptr<can::LinkControl> link, co
   auto out = plan_bus_bitrate(std::move(link), *change.bitrate, may_change);
   if (!out || !out->follows()) return out;
   if (std::chrono::milliseconds(*change.delay_ms) < kLeastDelay)
-    out->why_not = fmt::format("{} ms are too short for it: --activate 1s", *change.delay_ms);
+    out->why_not = formatted("{} ms are too short for it: --activate 1s", *change.delay_ms);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/format.hpp"
 #include "canopen/node_id.hpp"
 #include "session/addressing.hpp"
 #include "session/identify.hpp"
@@ -70,15 +71,15 @@ Result<void> leave_nobody_behind(session::Session& session, const LssBitrateChan
     return heard;
   const auto shared = node_of_two(session, *crowd);
   if (shared)
-    plan.why_not = fmt::format("two drives are node {}, and one of them would be left at {}", *shared,
-                               old_bitrate_text(plan));
+    plan.why_not = formatted("two drives are node {}, and one of them would be left at {}", *shared,
+                             old_bitrate_text(plan));
   else if (!others->empty())
     plan.why_not =
-        fmt::format("node{} {} would be left at {}: no LSS slave, or not one that is meant",
-                    others->size() == 1 ? "" : "s", fmt::join(*others, ", "), old_bitrate_text(plan));
+        formatted("node{} {} would be left at {}: no LSS slave, or not one that is meant",
+                  others->size() == 1 ? "" : "s", fmt::join(*others, ", "), old_bitrate_text(plan));
   else if (crowd->others > 0)
-    plan.why_not = fmt::format("an LSS slave without a node-ID would be left at {}: --all takes it along",
-                               old_bitrate_text(plan));
+    plan.why_not = formatted("an LSS slave without a node-ID would be left at {}: --all takes it along",
+                             old_bitrate_text(plan));
   return {};
 }
 

@@ -1,10 +1,10 @@
 #include "settings/lss_node.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "canopen/node_id.hpp"
 #include "canopen/node_list.hpp"
 #include "drive/standard_objects.hpp"
@@ -105,7 +105,7 @@ class LssNodeRun {
         session::restart_node(*session_, *slave_->node, drive::NmtRules::Restart::reset_communication);
     if (!sent) return fail_with("set; holds from its next start", sent.error());
     if (is_shared_)
-      desk_->notices.push_back(fmt::format(
+      desk_->notices.push_back(formatted(
           "node {}: the other drive of this node-ID was reset as well: its unstored PDOs, COB-IDs and heartbeats are lost",
           *slave_->node));
     return true;
@@ -185,11 +185,11 @@ class LssNodeRun {
 
   void tell_strayed(std::uint8_t node) {
     out_.strayed = node;
-    fail_with("set; has another node-ID",
-              drive_error(
-                  Errc::protocol, node,
-                  fmt::format("it has the identity of the LSS slave that confirmed node-ID {}", change_->to),
-                  fmt::format("`lss set-node {} -n {}` tries again", change_->to, node)));
+    fail_with(
+        "set; has another node-ID",
+        drive_error(Errc::protocol, node,
+                    formatted("it has the identity of the LSS slave that confirmed node-ID {}", change_->to),
+                    formatted("`lss set-node {} -n {}` tries again", change_->to, node)));
   }
 
   /// It has no SDO then, and not every slave answers the question for those without a node-ID.

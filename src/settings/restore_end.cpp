@@ -1,7 +1,6 @@
 #include "settings/restore_end.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
@@ -34,10 +33,10 @@ Error flash_error(const drive::Profile* profile, std::uint8_t node,
   std::string names;
   for (std::size_t i = 0; i < in_flash.size() && i < kMostNamed; ++i)
     append(names, drive::target_at(profile, in_flash[i]).in_sentence());
-  if (in_flash.size() > kMostNamed) append(names, fmt::format("and {} more", in_flash.size() - kMostNamed));
+  if (in_flash.size() > kMostNamed) append(names, formatted("and {} more", in_flash.size() - kMostNamed));
   return drive_error(
       Errc::negative, node,
-      fmt::format("its flash was not put back: after power-off these may have other values: {}", names),
+      formatted("its flash was not put back: after power-off these may have other values: {}", names),
       "it worked in RAM, so what its flash held before is not known");
 }
 

@@ -1,12 +1,12 @@
 #include "settings/restore_journal.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 #include <set>
 
 #include "base/checksum.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "canopen/cob_id.hpp"
 #include "drive/drive_settings.hpp"
@@ -68,7 +68,7 @@ Result<RestoreJournal> parse_journal(const Value& document, const std::string& f
   show::FieldReader fields(document, file);
   if (const auto version = fields.number("servoctl_journal", true); version && *version != kJournalVersion)
     return no_journal(
-        fmt::format("{}: its version {} is not that of this program ({})", file, *version, kJournalVersion));
+        formatted("{}: its version {} is not that of this program ({})", file, *version, kJournalVersion));
   RestoreJournal out;
   out.checksum = fields.text("checksum", true);
   const auto node = fields.number("node", true).value_or(0);
@@ -87,7 +87,7 @@ Result<RestoreJournal> parse_journal(const Value& document, const std::string& f
   if (fields.error()) return no_journal(*fields.error());
   if (seal != seal_of(out))
     return no_journal(
-        fmt::format("{}: its seal does not match: the file was changed after it was written", file));
+        formatted("{}: its seal does not match: the file was changed after it was written", file));
   return out;
 }
 
@@ -96,8 +96,8 @@ Result<void> check_mean(const drive::Profile& profile, std::uint8_t node, Object
                         const Bytes& bytes) {
   const auto means = drive::means_of_writing(profile);
   if (std::none_of(means.begin(), means.end(), [&](const auto& mean) { return mean.first == object; }))
-    return fail(Errc::file, fmt::format("{} neither chooses a memory nor opens a lock of {}",
-                                        to_string(object), profile.family));
+    return fail(Errc::file, formatted("{} neither chooses a memory nor opens a lock of {}", to_string(object),
+                                      profile.family));
   const auto meaning = drive::fitted(drive::meaning(drive::target_at(&profile, object), node), bytes.size());
   const auto value = od::decode(meaning.type, bytes);
   if (!value) return fail(value.error());
@@ -111,8 +111,8 @@ Result<void> check_means(const drive::Profile& profile, const RestoreJournal& jo
     const bool twice = !seen.insert(object).second;
     const auto known = check_mean(profile, journal.node, object, bytes);
     if (twice || !known)
-      return no_journal(fmt::format("{}: {}: {}", file, to_string(object),
-                                    twice ? std::string("appears twice") : known.error().message));
+      return no_journal(formatted("{}: {}: {}", file, to_string(object),
+                                  twice ? std::string("appears twice") : known.error().message));
   }
   return {};
 }

@@ -1,8 +1,8 @@
 #include "settings/restore_keeping.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
@@ -31,12 +31,12 @@ void add_replaced(const drive::Profile& profile, std::uint8_t node, const std::s
     const auto* parameter = profile.parameter(place);
     if ((own != wanted.end() && own->second == copy) || parameter == nullptr || !parameter->mirror) continue;
     const auto object = *parameter->mirror;
-    const auto says = own == wanted.end() ? std::string("which is not written")
-                                          : fmt::format("which {} says is {}", title,
-                                                        shown(profile, node, place, own->second));
-    out.push_back(fmt::format("node {}: {} is {} only until a restart: the drive then takes it from {}, {}",
-                              node, to_string(object), shown(profile, node, object, wanted.at(object)),
-                              parameter->id, says));
+    const auto says = own == wanted.end()
+                          ? std::string("which is not written")
+                          : formatted("which {} says is {}", title, shown(profile, node, place, own->second));
+    out.push_back(formatted("node {}: {} is {} only until a restart: the drive then takes it from {}, {}",
+                            node, to_string(object), shown(profile, node, object, wanted.at(object)),
+                            parameter->id, says));
   }
 }
 
@@ -55,9 +55,9 @@ std::vector<std::string> doubts_of_keeping(const drive::Profile& profile, std::u
     if (!is_written || session::is_known_to_keep(profile, object)) continue;
     if (unknown++ < kMostNames) append(names, to_string(object));
   }
-  if (unknown > kMostNames) append(names, fmt::format("and {} more", unknown - kMostNames));
+  if (unknown > kMostNames) append(names, formatted("and {} more", unknown - kMostNames));
   if (unknown > 0)
-    out.push_back(fmt::format(
+    out.push_back(formatted(
         "node {}: the manual does not say whether these survive power-off: {}; read them after a restart",
         node, names));
   add_replaced(profile, node, title, wanted, out);

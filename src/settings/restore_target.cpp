@@ -1,9 +1,9 @@
 #include "settings/restore_target.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 
+#include "base/format.hpp"
 #include "drive/cia402.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/standard_objects.hpp"
@@ -48,24 +48,24 @@ Result<void> RestoreTarget::check_identity() {
   const bool force = choice_.force;
   if (backup_->family != desk_->profile->family && !force)
     return fail(Errc::refused,
-                fmt::format("{} is for {}, not for {}", title_, backup_->family, desk_->profile->family),
+                formatted("{} is for {}, not for {}", title_, backup_->family, desk_->profile->family),
                 "--force restores what fits anyway");
   const std::uint8_t nodes[] = {node_};
   const auto found = session::scan(*desk_->session, nodes);
   if (!found) return fail(found.error());
   if (found->empty())
-    return fail(Errc::timeout, fmt::format("node {} does not answer", node_), "`scan` shows who does");
+    return fail(Errc::timeout, formatted("node {} does not answer", node_), "`scan` shows who does");
   identity_ = found->front();
   const auto& drive = identity_;
   if (const auto what = show::other_kind(backup_->identity, drive); !what.empty() && !force)
-    return fail(Errc::refused, fmt::format("node {} is not the drive of {}: {} differs", node_, title_, what),
+    return fail(Errc::refused, formatted("node {} is not the drive of {}: {} differs", node_, title_, what),
                 "--force restores what fits anyway");
   const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
   if (says_firmware && !drive.by_registers &&
       (backup_->identity.revision != drive.revision ||
        backup_->identity.software_version != drive.software_version))
     desk_->notices.push_back(
-        fmt::format("node {}: its firmware differs from the backup's: check the important values", node_));
+        formatted("node {}: its firmware differs from the backup's: check the important values", node_));
   return {};
 }
 
@@ -77,7 +77,7 @@ Result<void> RestoreTarget::check_standstill() const {
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
-  return fail(Errc::refused, fmt::format("node {} is energised: its settings cannot be changed now", node_),
+  return fail(Errc::refused, formatted("node {} is energised: its settings cannot be changed now", node_),
               "`disable` de-energises it; make sure that the load is held");
 }
 
@@ -90,9 +90,9 @@ Result<void> RestoreTarget::check_at_rest() const {
     if (!value) return fail(value.error());
     if (load_le(*value) == 0) continue;
     return fail(drive_error(Errc::refused, node_, *place,
-                            fmt::format("{} is not 0: it may be enabled, or its motor turns; its settings "
-                                        "cannot be changed now",
-                                        name),
+                            formatted("{} is not 0: it may be enabled, or its motor turns; its settings "
+                                      "cannot be changed now",
+                                      name),
                             "stop and disable it first; make sure that the load is held"));
   }
   return {};
@@ -100,8 +100,8 @@ Result<void> RestoreTarget::check_at_rest() const {
 
 /// Only what this drive's own data calls a setting is ever written, whatever the file says.
 Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_view reason) {
-  const auto what = fmt::format("{}:{}: {} is not a setting of this drive: {}", title_, entry.line,
-                                to_string(entry.object), reason);
+  const auto what = formatted("{}:{}: {} is not a setting of this drive: {}", title_, entry.line,
+                              to_string(entry.object), reason);
   if (!choice_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
   desk_->notices.push_back(what + "; it is left out");
   return {};
@@ -114,8 +114,8 @@ bool RestoreTarget::is_out_of_reach(const Backup::Entry& entry) {
   unreachable_ += reached ? 0U : 1U;
   if (!reached || !is_target(*desk_->profile, entry.object)) return !reached;
   desk_->notices.push_back(
-      fmt::format("node {}: {} stays as it is: a drive that an input enables would follow it at once", node_,
-                  drive::target_at(desk_->profile, entry.object).in_sentence()));
+      formatted("node {}: {} stays as it is: a drive that an input enables would follow it at once", node_,
+                drive::target_at(desk_->profile, entry.object).in_sentence()));
   return true;
 }
 
@@ -155,8 +155,8 @@ Result<void> RestoreTarget::choose_values() {
   if (choice_.keep) add_copies(settings);
   if (unreachable_ > 0)
     desk_->notices.push_back(
-        fmt::format("node {}: {} values of {} have no Modbus register and stay as they are", node_,
-                    unreachable_, title_));
+        formatted("node {}: {} values of {} have no Modbus register and stay as they are", node_,
+                  unreachable_, title_));
   return {};
 }
 
@@ -194,8 +194,8 @@ Result<void> RestoreTarget::read_present() {
     }
     if (!choice_.force)
       return fail(Errc::negative,
-                  fmt::format("{}:{}: {}: {}", title_, line_of(entry.object), to_string(entry.object),
-                              entry.bytes ? "it has another length in the drive" : entry.left_out),
+                  formatted("{}:{}: {}: {}", title_, line_of(entry.object), to_string(entry.object),
+                            entry.bytes ? "it has another length in the drive" : entry.left_out),
                   "nothing was written; --force restores the rest");
     wanted_.erase(entry.object);
   }
@@ -216,7 +216,7 @@ tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std:
   const auto of = copy == copies_.end() ? "" : to_string(copy->second) + ": its stored copy ";
   const auto name = of + drive::target_at(desk_->profile, object).in_sentence();
   auto error =
-      fail(code, fmt::format("{}:{}: {}: {}", title_, line_of(object), name, what), std::move(hint)).value();
+      fail(code, formatted("{}:{}: {}: {}", title_, line_of(object), name, what), std::move(hint)).value();
   error.node = node_;
   error.object = object;
   return fail(std::move(error));
@@ -259,7 +259,7 @@ Result<void> RestoreTarget::check_each(bool copies) {
       if (error.code == Errc::negative) error.hint += "; --skip-invalid restores the rest";
       return fail(std::move(error));
     }
-    error.message += "; node " + fmt::format("{} keeps {}", node_, to_hex(present_.at(object)));
+    error.message += "; node " + formatted("{} keeps {}", node_, to_hex(present_.at(object)));
     error.hint = skipped ? "" : "the drive may not accept its own original value again: `write` it if needed";
     left_.push_back(std::move(error));
     wanted_.erase(object);

@@ -1,7 +1,6 @@
 #include "settings/restoring.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/identify.hpp"
@@ -56,7 +55,7 @@ class Restoring {
     auto taken = FileLock::take(attempt_.undoes.string() + ".lock");
     if (!taken) return fail(taken.error());
     if (!*taken)
-      return fail(Errc::refused, fmt::format("another servoctl is restoring {} into node {}", title_, node_),
+      return fail(Errc::refused, formatted("another servoctl is restoring {} into node {}", title_, node_),
                   "wait until it ends, or find it with `ps`");
     undone_lock_.emplace(std::move(**taken));
     return {};
@@ -77,7 +76,7 @@ class Restoring {
     RestoreTarget target(*desk_, *backup_, title_, node_, choice);
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     if (const auto same = hold_to_expected(target.present()); !same) return fail(same.error());
-    auto comparison = compare(desk_->profile, {fmt::format("node {}", node_), node_, target.present()},
+    auto comparison = compare(desk_->profile, {formatted("node {}", node_), node_, target.present()},
                               {title_, node_, target.wanted()}, true, desk_->chinese);
     left_over_ = target.left();
     if (options_.keep)
@@ -125,8 +124,8 @@ class Restoring {
     const auto refuse = [this](ObjectAddress object, std::string_view then, std::string_view now) {
       return fail(
           drive_error(Errc::refused, node_, object,
-                      fmt::format("{} has changed since the plan was made: it held {} then, and holds {} now",
-                                  name_of(drive::target_at(desk_->profile, object)), then, now),
+                      formatted("{} has changed since the plan was made: it held {} then, and holds {} now",
+                                name_of(drive::target_at(desk_->profile, object)), then, now),
                       "nothing was written to this drive; look at the plan again"));
     };
     for (const auto& [object, then] : *options_.expected)
@@ -141,11 +140,10 @@ class Restoring {
 
   std::string question(std::size_t different) const {
     if (different == 0)
-      return fmt::format(
-          "All values of node {} already match {}. {}?", node_, title_,
-          options_.keep ? "Store them in the drive" : "Restore its memory switch and password");
-    if (different == 1) return fmt::format("Write 1 value of {} to node {}?", title_, node_);
-    return fmt::format("Write {} values of {} to node {}?", different, title_, node_);
+      return formatted("All values of node {} already match {}. {}?", node_, title_,
+                       options_.keep ? "Store them in the drive" : "Restore its memory switch and password");
+    if (different == 1) return formatted("Write 1 value of {} to node {}?", title_, node_);
+    return formatted("Write {} values of {} to node {}?", different, title_, node_);
   }
 
   Result<Value> planned(const RestoreTarget& target) const {
@@ -186,9 +184,9 @@ class Restoring {
   void tell_other_name() const {
     for (const auto& other : file_->passed_over())
       if (other.path == before_)
-        desk_->notices.push_back(fmt::format("{} is left as it is, {}: the old values of node {} go to {}",
-                                             before_.string(), other.origin.why, node_,
-                                             file_->path().string()));
+        desk_->notices.push_back(formatted("{} is left as it is, {}: the old values of node {} go to {}",
+                                           before_.string(), other.origin.why, node_,
+                                           file_->path().string()));
   }
 
   Value take_away_journals(Value done) {
@@ -210,7 +208,7 @@ class Restoring {
     for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
     if (differs_)
       desk_->notices.push_back(
-          fmt::format("the old values of node {} are in {}", node_, file_->path().string()));
+          formatted("the old values of node {} are in {}", node_, file_->path().string()));
     const auto* const stored = keeps_address_ ? "nothing else differs; stored" : "nothing differs; stored";
     const auto* const done = differs_ || !options_.keep ? "restored" : stored;
     if (!outcome.failure) return take_away_journals(result(std::move(record), said(done), outcome));
@@ -220,13 +218,13 @@ class Restoring {
     if (end_ == RestoreEnd::rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
     // `store` is what is left to do.
     if (outcome.all_written && is_refused_store(*outcome.failure)) return take_away_journals(std::move(out));
-    desk_->notices.push_back(fmt::format("node {}: --resume continues once the cause is removed", node_));
+    desk_->notices.push_back(formatted("node {}: --resume continues once the cause is removed", node_));
     return out;
   }
 
   const char* same() const { return keeps_address_ ? "nothing else differs" : "nothing differs"; }
   std::string said(std::string state) const {
-    return left_over_.empty() ? state : fmt::format("{}; {} left as it is", state, left_over_.size());
+    return left_over_.empty() ? state : formatted("{}; {} left as it is", state, left_over_.size());
   }
 
   /// Of all values; null where it is not known of one.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/drive_settings.hpp"
 
@@ -27,8 +28,8 @@ Result<Selection> selection_of(const drive::Profile& profile, std::string_view w
   if (groups.count(std::string(word)) == 0) {
     std::vector<std::string> parts{"communication", "pdo", "params"};
     parts.insert(parts.end(), groups.begin(), groups.end());
-    return fail(Errc::usage, fmt::format("'{}' is not a part of the settings", word),
-                fmt::format("write one of {}", fmt::join(parts, ", ")));
+    return fail(Errc::usage, formatted("'{}' is not a part of the settings", word),
+                formatted("write one of {}", fmt::join(parts, ", ")));
   }
   return Selection{[&profile, group = std::string(word)](ObjectAddress object) {
     const auto* parameter = profile.parameter(object);

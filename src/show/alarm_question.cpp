@@ -1,8 +1,8 @@
 #include "show/alarm_question.hpp"
 
-#include <fmt/format.h>
 #include <string>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/access_alarms.hpp"
 #include "session/wary.hpp"
@@ -32,12 +32,12 @@ Result<void> confirm_alarms(const Desk& desk, std::span<session::SdoRequest> req
     if (alarm_of(request).empty() || is_contradicted(desk, request.node)) continue;
     request.despite_alarm = true;
     if (first == nullptr) first = &request;
-    append(objects, fmt::format("{} of node {}", to_string(request.object), request.node));
+    append(objects, formatted("{} of node {}", to_string(request.object), request.node));
   }
   if (first == nullptr) return {};
   return desk.confirm(
-      fmt::format("Read {}? The data of {} have no such object, and a request for it raises the alarm {}.",
-                  objects, session.wary_of(first->node)->family, alarm_of(*first)));
+      formatted("Read {}? The data of {} have no such object, and a request for it raises the alarm {}.",
+                objects, session.wary_of(first->node)->family, alarm_of(*first)));
 }
 
 Result<void> confirm_unlisted(const Desk& desk, std::uint8_t node, std::span<const drive::Target> targets) {
@@ -51,12 +51,11 @@ Result<void> confirm_unlisted(const Desk& desk, std::uint8_t node, std::span<con
     // What certainly raises one is another question.
     if (here.empty() || !drive::access_alarm(*known, target.address).empty()) continue;
     alarm = here;
-    append(names, target.unlisted.empty()
-                      ? to_string(target.address)
-                      : fmt::format("{} ({})", target.unlisted, to_string(target.address)));
+    append(names, target.unlisted.empty() ? to_string(target.address)
+                                          : formatted("{} ({})", target.unlisted, to_string(target.address)));
   }
   if (names.empty()) return {};
-  return desk.confirm(fmt::format(
+  return desk.confirm(formatted(
       "Ask node {} for {}? The data of {} do not list it; if the drive does not have it, the request "
       "raises the alarm {}.",
       node, names, known->family, alarm));

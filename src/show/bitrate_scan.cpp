@@ -1,7 +1,6 @@
 #include "show/bitrate_scan.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "can/slcan_place.hpp"
 #include "drive/bitrate.hpp"
 #include "session/adapter_link.hpp"
@@ -44,32 +43,32 @@ void tell_bitrate(Desk& desk, const can::LinkState& before, std::uint32_t bitrat
   const auto at = drive::bitrate_text(bitrate);
   const auto url = session::canonical_url(desk.session->url());
   if (!url.starts_with(kSerialBus)) {
-    desk.notices.push_back(fmt::format("nodes answered at {0}: {1} stays at it (it was at {2})", at, url,
-                                       session::settings_text(before)));
+    desk.notices.push_back(formatted("nodes answered at {0}: {1} stays at it (it was at {2})", at, url,
+                                     session::settings_text(before)));
     return;
   }
   auto place = can::parse_slcan_place(url.substr(kSerialBus.size()));
   if (!place) return;
   place->bitrate = bitrate;
-  desk.notices.push_back(fmt::format("nodes answered at {}: from now on `-b {}`, because {} means {}", at,
-                                     can::slcan_url(*place), url, session::settings_text(before)));
+  desk.notices.push_back(formatted("nodes answered at {}: from now on `-b {}`, because {} means {}", at,
+                                   can::slcan_url(*place), url, session::settings_text(before)));
 }
 
 std::string asking_question(const std::string& name, const can::LinkState& now) {
   const auto receivers = can::link_receivers(name);
-  auto out = fmt::format(
+  auto out = formatted(
       "Ask for nodes on {} at each bitrate? It is at {} now, and is taken down and up for each; a node that runs at "
       "another bitrate sees errors for that time",
       name, session::settings_text(now));
   // The session's own socket is one of them.
-  if (receivers > 1) out += fmt::format("; {} other sockets receive from it", receivers - 1);
+  if (receivers > 1) out += formatted("; {} other sockets receive from it", receivers - 1);
   return out + ".";
 }
 
 std::string text_of(const session::Asked& asked) {
   const auto at = drive::bitrate_text(asked.bitrate);
-  if (asked.nodes > 0) return fmt::format("{}: {} node{}\n", at, asked.nodes, asked.nodes == 1 ? "" : "s");
-  return fmt::format("{}: {}\n", at, asked.why.empty() ? "no answer" : asked.why);
+  if (asked.nodes > 0) return formatted("{}: {} node{}\n", at, asked.nodes, asked.nodes == 1 ? "" : "s");
+  return formatted("{}: {}\n", at, asked.why.empty() ? "no answer" : asked.why);
 }
 
 }  // namespace
@@ -85,10 +84,10 @@ Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<c
   const auto now = (*link)->state();
   if (!now) return fail(now.error());
   if (!session.energised().empty())
-    return fail(Errc::refused, fmt::format("{} stays at its bitrate: a drive is energised over it", name),
+    return fail(Errc::refused, formatted("{} stays at its bitrate: a drive is energised over it", name),
                 "`disable -n all` first");
   if (session.can()->sync() != nullptr)
-    return fail(Errc::refused, fmt::format("{} stays at its bitrate: SYNC is produced on it", name),
+    return fail(Errc::refused, formatted("{} stays at its bitrate: SYNC is produced on it", name),
                 "`sync stop` first");
   if (const auto silent = hold_silence(desk, **link); !silent) return fail(silent.error());
   if (const auto agreed = desk.confirm(asking_question(name, *now)); !agreed) return fail(agreed.error());
@@ -98,8 +97,8 @@ Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<c
   if (!done) return fail(done.error());
   if (done->bitrate && done->bitrate != now->bitrate) tell_bitrate(desk, *now, *done->bitrate);
   if (!done->bitrate)
-    desk.notices.push_back(fmt::format("no node answered at any bitrate; {} is at {} again", name,
-                                       session::settings_text(*now)));
+    desk.notices.push_back(
+        formatted("no node answered at any bitrate; {} is at {} again", name, session::settings_text(*now)));
   return std::move(done->found);
 }
 

@@ -1,9 +1,9 @@
 #include "show/bus_name.hpp"
 
-#include <fmt/format.h>
 #include <cctype>
 #include <cstdint>
 
+#include "base/format.hpp"
 #include "session/open_bus.hpp"
 
 namespace servoctl::show {
@@ -24,7 +24,7 @@ std::string bus_name(std::string_view url) {
   auto out = bus.substr(0, kMost);
   for (auto& c : out)
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '-';
-  return out == bus ? out : fmt::format("{}-{:08x}", out, hash_of(bus));
+  return out == bus ? out : formatted("{}-{:08x}", out, hash_of(bus));
 }
 
 }  // namespace servoctl::show

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "report/catalogue.hpp"
 
@@ -50,7 +51,7 @@ class CautionWords {
 
   template <class... Parts>
   void add(std::string_view pattern, const Parts&... parts) {
-    add_text(fmt::format(fmt::runtime(say(pattern)), parts...));
+    add_text(formatted(fmt::runtime(say(pattern)), parts...));
   }
 
   void add_text(std::string_view sentence) {
@@ -59,11 +60,11 @@ class CautionWords {
 
   std::string condition() const {
     if (caution_->not_value && !caution_->others.empty())
-      return fmt::format(fmt::runtime(say(kNoneIs)), caution_->name, fmt::join(caution_->others, ", "),
-                         *caution_->not_value);
-    if (caution_->value) return fmt::format("{} = {}", caution_->name, *caution_->value);
+      return formatted(fmt::runtime(say(kNoneIs)), caution_->name, fmt::join(caution_->others, ", "),
+                       *caution_->not_value);
+    if (caution_->value) return formatted("{} = {}", caution_->name, *caution_->value);
     if (caution_->not_value)
-      return fmt::format(fmt::runtime(say(kOther)), caution_->name, *caution_->not_value);
+      return formatted(fmt::runtime(say(kOther)), caution_->name, *caution_->not_value);
     return profile_->family;
   }
 
@@ -108,7 +109,7 @@ std::string_view name(drive::Input input) {
 }
 
 std::string ending_setting(const drive::Caution& caution) {
-  return caution.set ? fmt::format("{} = {}", caution.name, *caution.set) : std::string();
+  return caution.set ? formatted("{} = {}", caution.name, *caution.set) : std::string();
 }
 
 bool needs_restart(const drive::Profile& profile, const drive::Caution& caution) {

@@ -1,10 +1,10 @@
 #include "show/chinese_names.hpp"
 
-#include <fmt/format.h>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/quantity.hpp"
 #include "show/caution_text.hpp"
@@ -21,7 +21,7 @@ void put(const std::vector<od::EnumLabel>& labels, report::Names& out) {
   std::string all_zh;
   for (const auto& label : labels) {
     put(label.label, label.label_zh, out);
-    append(all_zh, fmt::format("{} {}", label.value, label.label_zh.empty() ? label.label : label.label_zh),
+    append(all_zh, formatted("{} {}", label.value, label.label_zh.empty() ? label.label : label.label_zh),
            "，");
   }
   if (!labels.empty()) put(drive::labels_text(labels), all_zh, out);

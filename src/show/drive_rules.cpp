@@ -1,7 +1,6 @@
 #include "show/drive_rules.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/provenance.hpp"
@@ -36,7 +35,7 @@ Value words_list(const std::vector<std::uint16_t>& controlwords) {
 
 Value settings(const std::vector<drive::Setting>& settings) {
   List out;
-  for (const auto& setting : settings) out.emplace_back(fmt::format("{} = {}", setting.name, setting.value));
+  for (const auto& setting : settings) out.emplace_back(formatted("{} = {}", setting.name, setting.value));
   return out.empty() ? Value() : Value(std::move(out));
 }
 
@@ -73,16 +72,16 @@ Value units(const Rules& rules) {
     const bool is = found != rules.units.end();
     add(name, is, is ? ways_text(found->second) : std::string());
   }
-  add("measured", !rules.learn.speed.empty(), fmt::format("by `units learn`, against {}", rules.learn.speed));
+  add("measured", !rules.learn.speed.empty(), formatted("by `units learn`, against {}", rules.learn.speed));
   return known ? Value(std::move(out)) : Value();
 }
 
 Value identity(const Rules& rules) {
   List out;
   for (const auto& mark : rules.identity) {
-    auto text = mark.text.empty() ? fmt::format("{} = 0x{:X}", to_string(mark.object), mark.value)
-                                  : fmt::format("{} = \"{}\"", to_string(mark.object), mark.text);
-    if (mark.mask != ~std::uint64_t{0}) text += fmt::format(" in the bits 0x{:X}", mark.mask);
+    auto text = mark.text.empty() ? formatted("{} = 0x{:X}", to_string(mark.object), mark.value)
+                                  : formatted("{} = \"{}\"", to_string(mark.object), mark.text);
+    if (mark.mask != ~std::uint64_t{0}) text += formatted(" in the bits 0x{:X}", mark.mask);
     out.emplace_back(std::move(text));
   }
   return out.empty() ? Value("none: name the drive with -d") : Value(std::move(out));
@@ -92,9 +91,8 @@ Value numbering(const Rules& rules) {
   List out;
   for (const auto& rule : rules.numbering) {
     const auto names = rule.prefix + (rule.group != 0 ? "a.bc" : rule.base == 16 ? "hex" : "n");
-    out.emplace_back(rule.unlisted
-                         ? fmt::format("{} from 0x{:04X} on, unlisted numbers too", names, rule.index)
-                         : fmt::format("{} from 0x{:04X} on", names, rule.index));
+    out.emplace_back(rule.unlisted ? formatted("{} from 0x{:04X} on, unlisted numbers too", names, rule.index)
+                                   : formatted("{} from 0x{:04X} on", names, rule.index));
   }
   return out.empty() ? Value() : Value(std::move(out));
 }
@@ -113,7 +111,7 @@ Value pdo(const Rules& rules) {
   std::vector<std::string> presets;
   for (const auto& preset : r.presets) presets.push_back(preset.name);
   Record types;
-  for (const auto& [type, meaning] : r.types) types.push_back({fmt::format("type {}", type), meaning});
+  for (const auto& [type, meaning] : r.types) types.push_back({formatted("type {}", type), meaning});
   // A drive whose PDOs are assigned by an object (CoE) has no COB-IDs.
   Record out{{"cob_id_bits", r.assign_rpdo.empty() ? Value(Hex{r.cob_id_bits, 8}) : Value(), Show::everywhere,
               "COB-ID bits that may change"},
@@ -164,8 +162,8 @@ Value modbus(const Rules& rules, bool chinese) {
   std::string text;
   List blocks;
   for (const auto& block : r.registers) {
-    append(text, fmt::format("{:04X}h-{:04X}h in {:04X}h-{:04X}h", block.index, block.index + block.count - 1,
-                             block.at, block.at + block.count - 1));
+    append(text, formatted("{:04X}h-{:04X}h in {:04X}h-{:04X}h", block.index, block.index + block.count - 1,
+                           block.at, block.at + block.count - 1));
     blocks.emplace_back(Record{{"index", block.index}, {"count", block.count}, {"at", block.at}});
   }
   return Record{{"registers", text, Show::text, "objects in registers"},
@@ -205,7 +203,7 @@ Value fault(const Rules& rules) {
       {"by_controlword", r.by_controlword, Show::everywhere, "reset by controlword"},
       {"reset_enabled_by",
        r.reset_enabled_by
-           ? Value(fmt::format("{} = {}", to_string(r.reset_enabled_by->object), r.reset_enabled_by->value))
+           ? Value(formatted("{} = {}", to_string(r.reset_enabled_by->object), r.reset_enabled_by->value))
            : Value(),
        Show::everywhere, "reset allowed by"},
       {"reset", settings(r.reset), Show::everywhere, "also reset by"},
@@ -234,13 +232,13 @@ Value cautions_text(const drive::Profile& profile, bool chinese) {
 std::string way_text(const drive::Quotient& way) {
   std::string out;
   if (!way.learned || !way.multiply.empty()) append(out, product(way.multiply), " × ");
-  for (const auto object : way.power_of_two) append(out, fmt::format("2^{}", to_string(object)), " × ");
+  for (const auto object : way.power_of_two) append(out, formatted("2^{}", to_string(object)), " × ");
   if (!way.divide.empty()) out += " / (" + product(way.divide) + ")";
-  if (way.learned) out = out.empty() ? "measured" : fmt::format("measured × {}", out);
+  if (way.learned) out = out.empty() ? "measured" : formatted("measured × {}", out);
   std::string conditions;
   for (const auto& condition : way.when)
-    append(conditions, fmt::format("{} = {}", to_string(condition.object), condition.value));
-  if (!conditions.empty()) out += fmt::format(" (when {})", conditions);
+    append(conditions, formatted("{} = {}", to_string(condition.object), condition.value));
+  if (!conditions.empty()) out += formatted(" (when {})", conditions);
   return out + (way.assumed ? " (assumed)" : "");
 }
 

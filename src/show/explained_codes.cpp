@@ -1,6 +1,6 @@
+#include "base/format.hpp"
 #include "show/explanation_parts.hpp"
 
-#include <fmt/format.h>
 #include <utility>
 
 #include "base/text.hpp"
@@ -27,14 +27,14 @@ void add_abort(const TopicQuery& query, const drive::Profile& profile, std::vect
   const auto error_class = number >> 24U;
   const bool own = profile.rules.abort_texts.count(number) > 0;
   if (!own && error_class != 0x05 && error_class != 0x06 && error_class != 0x08) return;
-  const auto name = fmt::format("0x{:08X}", number);
+  const auto name = formatted("0x{:08X}", number);
   const std::string words_zh(report::chinese_word(abort_words(&profile, true, number)));
   const auto words = abort_words(&profile, false, number);
   constexpr std::string_view kTitle = "SDO abort code {}: {}";
-  auto topic = topic_heading(profile.family, "abort", name, fmt::format(kTitle, name, words),
+  auto topic = topic_heading(profile.family, "abort", name, formatted(kTitle, name, words),
                              words_zh == words
                                  ? std::string()
-                                 : fmt::format(fmt::runtime(report::chinese_word(kTitle)), name, words_zh));
+                                 : formatted(fmt::runtime(report::chinese_word(kTitle)), name, words_zh));
   topic.text = canopen::sdo_abort_hint(number);
   topic.text_zh = report::in_chinese(topic.text);
   topic.line = canopen::is_standard_sdo_abort(number) ? "CiA 301, 7.2.4.3.17" : "";
@@ -57,8 +57,7 @@ drive::Topic exit_code_topic() {
   out.columns = {std::string(kCode), "error.code"};
   out.columns_zh = {chinese_of(kCode), "error.code"};
   const auto row = [&](int code, std::string_view name, std::string_view text) {
-    out.rows.push_back(
-        {{fmt::format("{}", code), std::string(name)}, std::string(text), chinese_of(text), {}});
+    out.rows.push_back({{formatted("{}", code), std::string(name)}, std::string(text), chinese_of(text), {}});
   };
   const auto error = [&](Errc code, std::string_view text) {
     row(exit_code(code), servoctl::name(code), text);
@@ -105,8 +104,8 @@ drive::Topic al_status_topic() {
     }
     out.rows.push_back({{std::move(cell)}, std::move(text), std::move(text_zh), {}});
   };
-  for (const auto status : ethercat::al_status_codes()) row(fmt::format("0x{:04X}", status), status);
-  row(fmt::format("0x{:04X}-0xFFFF", ethercat::kFirstOfVendor), ethercat::kFirstOfVendor);
+  for (const auto status : ethercat::al_status_codes()) row(formatted("0x{:04X}", status), status);
+  row(formatted("0x{:04X}-0xFFFF", ethercat::kFirstOfVendor), ethercat::kFirstOfVendor);
   return out;
 }
 

@@ -1,6 +1,6 @@
+#include "base/format.hpp"
 #include "show/explanation_parts.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -16,7 +16,7 @@ namespace {
 Explanation of_faults(const drive::Profile& profile, const std::vector<const drive::Fault*>& faults,
                       bool chinese) {
   const auto& first = *faults.front();
-  const auto code = first.code ? fmt::format("0x{:04X}", *first.code) : std::string();
+  const auto code = first.code ? formatted("0x{:04X}", *first.code) : std::string();
   const auto name = !first.panel.empty() ? first.panel : code.empty() ? first.name : code;
   if (faults.size() == 1) {
     const auto title_zh = first.name_zh.empty() ? std::string() : name + " " + first.name_zh;
@@ -24,7 +24,7 @@ Explanation of_faults(const drive::Profile& profile, const std::vector<const dri
     topic.line = source_of_line(first.line);
     return {std::move(topic), Found::fault, {}, fault_record(first, chinese)};
   }
-  auto shared = fmt::format("{}: {} faults share this code", code, faults.size());
+  auto shared = formatted("{}: {} faults share this code", code, faults.size());
   auto shared_zh = report::in_chinese(shared);
   return {topic_heading(profile.family, "fault", code, std::move(shared), std::move(shared_zh)),
           Found::fault,
@@ -41,8 +41,8 @@ void add_parent_fault(const drive::Profile& profile, std::uint64_t code, bool ch
   if (fault == nullptr) return;
   out.push_back(of_faults(profile, {fault}, chinese));
   auto& topic = out.back().topic;
-  topic.note = fmt::format(kNote, profile.family);
-  topic.note_zh = fmt::format(fmt::runtime(report::chinese_word(kNote)), profile.family);
+  topic.note = formatted(kNote, profile.family);
+  topic.note_zh = formatted(fmt::runtime(report::chinese_word(kNote)), profile.family);
   topic.line.clear();
 }
 

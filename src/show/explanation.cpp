@@ -1,11 +1,11 @@
 #include "show/explanation.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <functional>
 #include <iterator>
 #include <optional>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "drive/homing_method.hpp"
@@ -27,8 +27,8 @@ Explanation of_entry(const drive::Profile& profile, const od::Object& object, co
                      bool chinese) {
   auto topic = topic_heading(
       profile.family, "object", drive::entry_name(object, entry),
-      fmt::format("{}: {}", to_string(entry.address), entry.name),
-      entry.name_zh.empty() ? std::string() : fmt::format("{}：{}", to_string(entry.address), entry.name_zh));
+      formatted("{}: {}", to_string(entry.address), entry.name),
+      entry.name_zh.empty() ? std::string() : formatted("{}：{}", to_string(entry.address), entry.name_zh));
   topic.object = entry.address;
   return {std::move(topic), Found::object, {}, object_details(profile, object, entry, chinese)};
 }
@@ -37,8 +37,8 @@ Explanation of_object(const drive::Profile& profile, const od::Object& object, b
   if (object.entries.size() == 1) return of_entry(profile, object, object.entries.front(), chinese);
   auto topic = topic_heading(
       profile.family, "object", od::identifier(object.name),
-      fmt::format("0x{:04X}: {}", object.index, object.name),
-      object.name_zh.empty() ? std::string() : fmt::format("0x{:04X}：{}", object.index, object.name_zh));
+      formatted("0x{:04X}: {}", object.index, object.name),
+      object.name_zh.empty() ? std::string() : formatted("0x{:04X}：{}", object.index, object.name_zh));
   topic.object = ObjectAddress{object.index, 0};
   std::vector<report::Record> records;
   for (const auto& entry : object.entries)
@@ -164,7 +164,7 @@ drive::Topic topic_heading(std::string_view family, std::string kind, std::strin
   return out;
 }
 
-std::string source_of_line(std::uint32_t line) { return line == 0 ? std::string() : fmt::format("{}", line); }
+std::string source_of_line(std::uint32_t line) { return line == 0 ? std::string() : formatted("{}", line); }
 
 std::vector<Explanation> explanations(const TopicQuery& query, std::span<const Library> libraries,
                                       bool chinese) {

@@ -1,7 +1,6 @@
 #include "show/fault_records.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "canopen/emergency.hpp"
 #include "drive/cia402.hpp"
@@ -15,7 +14,7 @@ using report::Show;
 using report::Value;
 
 std::string code_text(const drive::Fault& fault) {
-  return fault.code ? fmt::format("0x{:04X}", *fault.code) : std::string();
+  return fault.code ? formatted("0x{:04X}", *fault.code) : std::string();
 }
 
 std::string name_of(const drive::Fault& fault, bool chinese) {
@@ -27,7 +26,7 @@ std::string name_of(const drive::Fault& fault, bool chinese) {
 std::string unlisted_words(const drive::Profile& profile, bool chinese, std::uint16_t code) {
   const auto* fault = profile.parent_fault(code);
   if (fault == nullptr) return canopen::emergency_text(code);
-  return fmt::format("{} (not among the faults of {})", name_of(*fault, chinese), profile.family);
+  return formatted("{} (not among the faults of {})", name_of(*fault, chinese), profile.family);
 }
 
 }  // namespace
@@ -109,14 +108,14 @@ std::string fault_words(const drive::Profile* profile, bool chinese, std::uint16
   std::string panels;
   for (const auto* fault : found)
     append(panels, (fault->panel.empty() ? name_of(*fault, chinese) : fault->panel));
-  return fmt::format("one of {} alarms: {}", found.size(), panels);
+  return formatted("one of {} alarms: {}", found.size(), panels);
 }
 
 report::Value ToldFault::cell(std::size_t most) const {
   if (!known) return {};
   if (text.empty()) return "none";
   if (!code) return "in fault, no code in 603Fh: `fault show`";
-  const auto number = fmt::format("0x{:04X}", *code);
+  const auto number = formatted("0x{:04X}", *code);
   return most == 0 ? number : number + " " + clip(text, most);
 }
 

@@ -1,8 +1,7 @@
 #include "show/known_drive.hpp"
 
-#include <fmt/format.h>
-
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/found_file.hpp"
 #include "show/bus_name.hpp"
 #include "show/field_reader.hpp"
@@ -23,7 +22,7 @@ tl::unexpected<Error> damaged(std::string message) {
 
 KnownDriveFile::KnownDriveFile(const std::filesystem::path& state_folder, std::string_view bus_url,
                                std::uint8_t node)
-    : node_(node), path_(state_folder / fmt::format("drive-{}-node-{}.json", bus_name(bus_url), node)) {}
+    : node_(node), path_(state_folder / formatted("drive-{}-node-{}.json", bus_name(bus_url), node)) {}
 
 Result<std::optional<KnownDrive>> KnownDriveFile::read() const {
   std::error_code error;
@@ -59,7 +58,7 @@ Result<void> KnownDriveFile::write(const KnownDrive& drive) const {
 Result<void> KnownDriveFile::remove() const {
   std::error_code error;
   std::filesystem::remove(path_, error);
-  if (error) return fail(Errc::file, fmt::format("{}: {}", path_.string(), error.message()));
+  if (error) return fail(Errc::file, formatted("{}: {}", path_.string(), error.message()));
   return {};
 }
 

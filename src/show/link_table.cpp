@@ -1,7 +1,6 @@
 #include "show/link_table.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "can/link_change.hpp"
 #include "drive/bitrate.hpp"
 
@@ -22,7 +21,7 @@ Value bitrate_of(const can::LinkState& state) {
 }
 
 Value sample_point_of(const can::LinkState& state) {
-  return state.sample_point ? Value(fmt::format("{:.1f} %", *state.sample_point / 10.0)) : Value();
+  return state.sample_point ? Value(formatted("{:.1f} %", *state.sample_point / 10.0)) : Value();
 }
 
 Value health_of(const can::LinkState& state) {
@@ -32,13 +31,12 @@ Value health_of(const can::LinkState& state) {
 /// `tx 0, rx 128`
 Value counters_of(const can::LinkState& state) {
   if (!state.tx_errors || !state.rx_errors) return {};
-  return fmt::format("tx {}, rx {}", *state.tx_errors, *state.rx_errors);
+  return formatted("tx {}, rx {}", *state.tx_errors, *state.rx_errors);
 }
 
 Value restart_of(const can::LinkState& state) {
   if (!state.restart_ms) return {};
-  return *state.restart_ms == 0 ? Value("not by itself")
-                                : Value(fmt::format("after {} ms", *state.restart_ms));
+  return *state.restart_ms == 0 ? Value("not by itself") : Value(formatted("after {} ms", *state.restart_ms));
 }
 
 std::string driver_of(const std::string& name, const can::LinkState& state) {

@@ -1,7 +1,6 @@
 #include "show/live_pdo.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::show {
@@ -12,8 +11,8 @@ LiveView::Layout pdo_layout() {
 }
 
 void show_values(LiveView& live, const PdoView& view, ByteSpan data, bool chinese) {
-  const auto node = fmt::format("{}", view.node);
-  const auto row = fmt::format("{} {}", node, view.name);
+  const auto node = formatted("{}", view.node);
+  const auto row = formatted("{} {}", node, view.name);
   std::string text;
   if (!shows_values(view, data)) {
     append_values(view, data, chinese, text);
@@ -23,7 +22,7 @@ void show_values(LiveView& live, const PdoView& view, ByteSpan data, bool chines
     const auto value = field.value(data);
     text.clear();
     append_value(field, value, chinese, text);
-    live.set(fmt::format("{} {}", row, field.first_bit), {node, view.name, field.name, text},
+    live.set(formatted("{} {}", row, field.first_bit), {node, view.name, field.name, text},
              plotted(od_value(value)));
   }
 }

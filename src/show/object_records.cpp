@@ -1,9 +1,9 @@
 #include "show/object_records.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
@@ -21,8 +21,7 @@ Value default_of(const std::optional<od::NodeValue>& value) {
   if (!value) return {};
   if (!value->plus_node_id) return od_value(value->value);
   const auto* number = std::get_if<std::uint64_t>(&value->value);
-  return number != nullptr ? fmt::format("$NODEID+0x{:X}", *number)
-                           : "$NODEID+" + od::to_string(value->value);
+  return number != nullptr ? formatted("$NODEID+0x{:X}", *number) : "$NODEID+" + od::to_string(value->value);
 }
 
 /// A float carried by an integer is shown as the number it is, beside its unit.
@@ -45,7 +44,7 @@ const std::vector<od::EnumLabel>& labels_of(const drive::Meaning& meaning) {
 
 std::string unit_of(const drive::Meaning& meaning) {
   return meaning.scale == 1 ? std::string(meaning.unit)
-                            : fmt::format("{} {}", plain_number(meaning.scale, 6), meaning.unit);
+                            : formatted("{} {}", plain_number(meaning.scale, 6), meaning.unit);
 }
 
 }  // namespace
@@ -133,15 +132,15 @@ std::vector<std::string> object_values(const drive::Profile& profile, const od::
   const auto meaning = drive::meaning(drive::target_at(&profile, entry.address), 0);
   for (const auto& label : labels_of(meaning)) {
     const bool in_chinese = chinese && !label.label_zh.empty();
-    out.push_back(fmt::format("{} {}", label.value, in_chinese ? label.label_zh : label.label));
+    out.push_back(formatted("{} {}", label.value, in_chinese ? label.label_zh : label.label));
   }
   return out;
 }
 
 Result<void> check_parameters(const drive::Profile& profile) {
   if (!profile.parameters.empty()) return {};
-  return fail(Errc::negative, fmt::format("{} has no panel parameters", profile.family),
-              fmt::format("`objects -d {}` lists its objects", profile.family));
+  return fail(Errc::negative, formatted("{} has no panel parameters", profile.family),
+              formatted("`objects -d {}` lists its objects", profile.family));
 }
 
 }  // namespace servoctl::show

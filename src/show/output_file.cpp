@@ -1,7 +1,8 @@
 #include "show/output_file.hpp"
 
-#include <fmt/format.h>
 #include <system_error>
+
+#include "base/format.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -10,9 +11,9 @@ namespace fs = std::filesystem;
 
 std::string question_about(const fs::path& file) {
   std::error_code error;
-  if (!fs::is_symlink(file, error)) return fmt::format("Replace the file {}?", file.string());
+  if (!fs::is_symlink(file, error)) return formatted("Replace the file {}?", file.string());
   const auto target = fs::canonical(file, error);
-  return fmt::format("Replace the file {}, to which the link {} leads?", target.string(), file.string());
+  return formatted("Replace the file {}, to which the link {} leads?", target.string(), file.string());
 }
 
 }  // namespace
@@ -27,7 +28,7 @@ bool is_replaced(const fs::path& file) {
 Result<void> may_replace(const fs::path& file, bool read_only, const Desk& desk) {
   if (!is_replaced(file)) return {};
   if (read_only)
-    return fail(Errc::refused, fmt::format("{} exists, and --read-only replaces no file", file.string()),
+    return fail(Errc::refused, formatted("{} exists, and --read-only replaces no file", file.string()),
                 "name a file that does not exist yet");
   return desk.confirm(question_about(file));
 }

@@ -1,10 +1,10 @@
 #include "show/owed_restart.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/regular_files.hpp"
 #include "base/text.hpp"
 #include "canopen/node_id.hpp"
@@ -34,7 +34,7 @@ std::string value_text(const drive::Target& target, std::uint8_t node, const Byt
   const auto decoded = decode_value({.node = node, .target = target, .type = {}}, bytes);
   const auto& words = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
   const auto* label = std::get_if<std::string>(&words.data());
-  return label == nullptr ? decoded.text : fmt::format("{} {}", decoded.text, *label);
+  return label == nullptr ? decoded.text : formatted("{} {}", decoded.text, *label);
 }
 
 std::string owed_name(const drive::Profile* profile, ObjectAddress object) {
@@ -63,14 +63,14 @@ Result<OwedValue> value_of(const Value& record, const std::string& file) {
 
 /// What the names of the files of a bus begin with; the node and `.json` follow.
 std::string name_of(std::string_view bus_url) {
-  return fmt::format("restart-{}-node-", bus_name(session::url_without_bitrate(bus_url)));
+  return formatted("restart-{}-node-", bus_name(session::url_without_bitrate(bus_url)));
 }
 
 }  // namespace
 
 OwedRestartFile::OwedRestartFile(const fs::path& state_folder, std::string_view bus_url, std::uint8_t node)
     : node_(node) {
-  if (!state_folder.empty()) path_ = state_folder / fmt::format("{}{}.json", name_of(bus_url), node);
+  if (!state_folder.empty()) path_ = state_folder / formatted("{}{}.json", name_of(bus_url), node);
 }
 
 std::vector<std::uint8_t> owing_nodes(const fs::path& state_folder, std::string_view bus_url) {
@@ -81,7 +81,7 @@ std::vector<std::uint8_t> owing_nodes(const fs::path& state_folder, std::string_
     const auto name = file->path().filename().string();
     if (!name.starts_with(begin)) continue;
     for (const auto node : canopen::every_node_id())
-      if (std::string_view(name).substr(begin.size()) == fmt::format("{}.json", node)) out.push_back(node);
+      if (std::string_view(name).substr(begin.size()) == formatted("{}.json", node)) out.push_back(node);
   }
   std::ranges::sort(out);
   return out;
@@ -233,9 +233,9 @@ std::string owed_text(const drive::Profile* profile, std::uint8_t node, const st
     const auto stored = value_text(target, node, value.stored, chinese);
     const auto name = owed_name(profile, value.object);
     append(out,
-           value.in_force ? fmt::format("{} = {} ({} in force)", name, stored,
-                                        value_text(target, node, *value.in_force, chinese))
-                          : fmt::format("{} = {}", name, stored),
+           value.in_force ? formatted("{} = {} ({} in force)", name, stored,
+                                      value_text(target, node, *value.in_force, chinese))
+                          : formatted("{} = {}", name, stored),
            ", ");
   }
   return out;
@@ -262,29 +262,29 @@ report::List owed_records(const drive::Profile* profile, const std::vector<OwedV
 
 std::string owed_notice(const Desk& desk, std::uint8_t node, const OwedRestart& owed) {
   if (owed.unread)
-    return fmt::format("node {}: what waits for a restart is not known: {}; {}", node, owed.unread->message,
-                       owed.unread->hint);
+    return formatted("node {}: what waits for a restart is not known: {}; {}", node, owed.unread->message,
+                     owed.unread->hint);
   if (owed.values.empty()) return {};
   const auto what = owed_text(desk.profile, node, owed.values, desk.speaks_chinese());
   const bool kept = std::ranges::all_of(owed.values, &OwedValue::kept);
   const auto says = desk.session->modbus() == nullptr ? "status" : "info";
   if (desk.session->can() != nullptr && !owed.by_power)
     return kept
-               ? fmt::format(
+               ? formatted(
                      "node {0}: stored, in force after a restart: {1}; `nmt reset -n {0} --wait` restarts it, "
                      "`{2} --restarted -n {0}` says that it was",
                      node, what, says)
-               : fmt::format(
+               : formatted(
                      "node {0}: written, in force after a restart, which may lose it unless it is stored first "
                      "(`store`): {1}; `nmt reset -n {0} --wait` restarts it, `{2} --restarted -n {0}` says "
                      "that it was",
                      node, what, says);
   return kept
-             ? fmt::format(
+             ? formatted(
                    "node {0}: stored, in force after a restart: {1}; switch it off and on, then "
                    "`{2} --restarted -n {0}`",
                    node, what, says)
-             : fmt::format(
+             : formatted(
                    "node {0}: written, in force after a restart, which may lose it unless it is stored first "
                    "(`store`): {1}; switch it off and on, then `{2} --restarted -n {0}`",
                    node, what, says);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/naming.hpp"
 #include "session/cob_id_check.hpp"
@@ -24,11 +25,11 @@ std::string name_of(const Pdo& pdo) { return canopen::name(pdo.direction, pdo.nu
 
 std::string name_of(const drive::Profile& profile, ObjectAddress object) {
   const auto label = drive::target_at(&profile, object).label();
-  return label.empty() ? to_string(object) : fmt::format("{} ({})", to_string(object), label);
+  return label.empty() ? to_string(object) : formatted("{} ({})", to_string(object), label);
 }
 
 tl::unexpected<Error> no(const Pdo& pdo, std::string why, std::string hint = {}) {
-  return fail(Errc::usage, fmt::format("{}: {}", name_of(pdo), std::move(why)), std::move(hint));
+  return fail(Errc::usage, formatted("{}: {}", name_of(pdo), std::move(why)), std::move(hint));
 }
 
 /// What the data says of it; doubts left aside.
@@ -57,17 +58,17 @@ Result<void> check_entry(const drive::Profile& profile, const Pdo& pdo, const Pd
   const auto* known = profile.dictionary.find(entry.object);
   if (known == nullptr) {
     if (profile.is_generic()) return {};
-    return no(pdo, fmt::format("{} is not in the dictionary of {}", to_string(entry.object), profile.family),
-              fmt::format("`objects -d {}` lists what it has", profile.family));
+    return no(pdo, formatted("{} is not in the dictionary of {}", to_string(entry.object), profile.family),
+              formatted("`objects -d {}` lists what it has", profile.family));
   }
   if (!may_map(*known, pdo.direction))
     return no(pdo, name + " cannot be mapped here", direction_hint(*known));
   const auto bits = bits_of(profile, entry.object);
   const bool sure = !profile.is_generic() && !known->doubts.about("type");
   if (bits && sure && *bits != entry.bits)
-    return no(pdo, fmt::format("{} has {} bits, not {}", name, *bits, entry.bits));
+    return no(pdo, formatted("{} has {} bits, not {}", name, *bits, entry.bits));
   if (profile.rules.pdo.whole_bytes && entry.bits % 8 != 0)
-    return no(pdo, fmt::format("{}: {} bits are not whole bytes", name, entry.bits),
+    return no(pdo, formatted("{}: {} bits are not whole bytes", name, entry.bits),
               "this drive maps bytes only");
   return {};
 }
@@ -86,7 +87,7 @@ std::string types_text(const drive::Profile& profile, const Pdo& pdo) {
     std::string types;
     for (const std::uint8_t type : {first, static_cast<std::uint8_t>(first + 1)})
       if (std::count(refused.begin(), refused.end(), type) == 0) append(types, fmt::to_string(type), " and ");
-    if (!types.empty()) out += fmt::format(", {} by {}", types, how);
+    if (!types.empty()) out += formatted(", {} by {}", types, how);
   };
   if ((pdo.cob_id & canopen::kPdoNoRtr) == 0) add(252, "remote frame");
   add(254, "event");
@@ -99,9 +100,9 @@ Result<void> check_type(const drive::Profile& profile, const Pdo& pdo) {
   const bool remote = pdo.type == 252 || pdo.type == 253;
   const bool transmit = pdo.direction == PdoDirection::transmit;
   if (reserved || (remote && !transmit))
-    return no(pdo, fmt::format("there is no transmission type {}", pdo.type), types_text(profile, pdo));
+    return no(pdo, formatted("there is no transmission type {}", pdo.type), types_text(profile, pdo));
   if (transmit && std::count(refused.begin(), refused.end(), pdo.type) > 0)
-    return no(pdo, fmt::format("this drive does not support transmission type {}", pdo.type),
+    return no(pdo, formatted("this drive does not support transmission type {}", pdo.type),
               types_text(profile, pdo));
   return {};
 }
@@ -112,8 +113,8 @@ Result<void> check_remote(const drive::Profile& profile, const Pdo& wanted) {
   const bool forbidden = (wanted.cob_id & canopen::kPdoNoRtr) != 0;
   if (wanted.direction != PdoDirection::transmit || !remote || !forbidden) return {};
   return no(wanted,
-            fmt::format("transmission type {} is sent on remote frames, which bit 30 of its COB-ID forbids",
-                        wanted.type),
+            formatted("transmission type {} is sent on remote frames, which bit 30 of its COB-ID forbids",
+                      wanted.type),
             types_text(profile, wanted));
 }
 
@@ -123,9 +124,9 @@ Result<void> check_bits(const drive::Profile& profile, const Pdo& present, const
   const bool other_id = (may_change & kBasicCanId) != 0;
   if (other_id && (wanted.cob_id & canopen::kPdoExtended) != 0)
     return no(wanted,
-              fmt::format("this drive has 11-bit CAN-IDs, {} is a 29-bit one", can_id_text(wanted.cob_id)),
+              formatted("this drive has 11-bit CAN-IDs, {} is a 29-bit one", can_id_text(wanted.cob_id)),
               "write one up to 0x7FF");
-  return no(wanted, fmt::format("this drive has the fixed COB-ID {}", can_id_text(present.cob_id)),
+  return no(wanted, formatted("this drive has the fixed COB-ID {}", can_id_text(present.cob_id)),
             "it can only be enabled and disabled");
 }
 
@@ -137,8 +138,8 @@ Result<void> check_can_id(const Pdo& wanted, std::span<const Pdo> all) {
   for (const auto& other : all) {
     const bool same = other.direction == wanted.direction && other.number == wanted.number;
     if (!same && other.is_valid() && other.can_id() == wanted.can_id())
-      return no(wanted, fmt::format("CAN-ID {} is used by {} of the same node", text, name_of(other)),
-                fmt::format("`pdo disable {}` frees it", name_of(other)));
+      return no(wanted, formatted("CAN-ID {} is used by {} of the same node", text, name_of(other)),
+                formatted("`pdo disable {}` frees it", name_of(other)));
   }
   return {};
 }
@@ -161,14 +162,14 @@ std::optional<std::uint8_t> bits_of(const drive::Profile& profile, ObjectAddress
 Result<void> check_mapping(const drive::Profile& profile, const Pdo& pdo) {
   const auto& rules = profile.rules.pdo;
   if (is_fixed(profile, pdo))
-    return no(pdo, fmt::format("its mapping 0x{:04X} is fixed", pdo.mapping_index()),
+    return no(pdo, formatted("its mapping 0x{:04X} is fixed", pdo.mapping_index()),
               "`pdo enable` selects it, `pdo show` lists what it carries");
   if (pdo.entries.size() > rules.most_entries)
-    return no(pdo, fmt::format("{} objects are too many, {} fit", pdo.entries.size(), rules.most_entries));
+    return no(pdo, formatted("{} objects are too many, {} fit", pdo.entries.size(), rules.most_entries));
   for (const auto& entry : pdo.entries)
     if (const auto fits = check_entry(profile, pdo, entry); !fits) return fits;
   if (pdo.bits() > rules.most_bits)
-    return no(pdo, fmt::format("{} bits are too many, {} fit", pdo.bits(), rules.most_bits),
+    return no(pdo, formatted("{} bits are too many, {} fit", pdo.bits(), rules.most_bits),
               "spread the objects over two PDOs");
   return {};
 }
@@ -179,7 +180,7 @@ Result<void> check_communication(const drive::Profile& profile, const Pdo& prese
   if (wanted.is_valid() && wanted.cob_id != present.cob_id)
     if (const auto free = check_can_id(wanted, all); !free) return free;
   const auto missing = [&](bool now, bool then, std::string_view what) {
-    return then && !now ? Result<void>(no(wanted, fmt::format("it has no {} on this drive", what)))
+    return then && !now ? Result<void>(no(wanted, formatted("it has no {} on this drive", what)))
                         : Result<void>();
   };
   if (const auto r = missing(present.inhibit.has_value(), wanted.inhibit.has_value(), "inhibit time"); !r)

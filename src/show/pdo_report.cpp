@@ -1,7 +1,6 @@
 #include "show/pdo_report.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "drive/naming.hpp"
 
 namespace servoctl::show {
@@ -16,13 +15,13 @@ using report::Value;
 std::string ordinal(unsigned number) {
   const bool teens = number % 100 / 10 == 1;
   const auto last = teens ? 0 : number % 10;
-  return fmt::format("{}{}", number, last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th");
+  return formatted("{}{}", number, last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th");
 }
 
 std::string sent_text(unsigned type) {
   if (type == 0) return "at the SYNC after a change";
   if (type == 1) return "at every SYNC";
-  if (type <= 240) return fmt::format("at every {} SYNC", ordinal(type));
+  if (type <= 240) return formatted("at every {} SYNC", ordinal(type));
   if (type == 252) return "on a remote frame, with the values of the last SYNC";
   if (type == 253) return "on a remote frame";
   if (type >= 254) return "by event";
@@ -69,17 +68,17 @@ std::string mapped_name(const drive::Profile* profile, canopen::PdoEntry entry, 
 
 std::string can_id_text(std::uint32_t cob_id) {
   const auto can_id = cob_id & canopen::kPdoCobIdMask;
-  return (cob_id & canopen::kPdoExtended) != 0 ? fmt::format("0x{:08X}", can_id)
-                                               : fmt::format("0x{:03X}", can_id);
+  return (cob_id & canopen::kPdoExtended) != 0 ? formatted("0x{:08X}", can_id)
+                                               : formatted("0x{:03X}", can_id);
 }
 
 std::string can_id_text(const Pdo& pdo, std::uint8_t node) {
   const auto base = base_of(pdo.can_id(), node);
   return base == 0 ? can_id_text(pdo.cob_id)
-                   : fmt::format("{} ($NODEID+0x{:X})", can_id_text(pdo.cob_id), base);
+                   : formatted("{} ($NODEID+0x{:X})", can_id_text(pdo.cob_id), base);
 }
 
-std::string inhibit_text(std::uint16_t inhibit) { return fmt::format("{:g} ms", inhibit_ms(inhibit)); }
+std::string inhibit_text(std::uint16_t inhibit) { return formatted("{:g} ms", inhibit_ms(inhibit)); }
 
 Record pdo_record(const drive::Profile* profile, const Pdo& pdo, std::uint8_t node, bool chinese) {
   const auto can_id = pdo.cob_id & canopen::kPdoCobIdMask;
@@ -111,21 +110,20 @@ Record pdo_record(const drive::Profile* profile, const Pdo& pdo, std::uint8_t no
 
 std::vector<std::string> pdo_lines(const drive::Profile* profile, const Pdo& pdo, std::uint8_t node,
                                    bool chinese, bool has_cob_ids) {
-  auto communication =
-      fmt::format("{}mapping 0x{:04X}", has_cob_ids ? "no COB-ID, " : "", pdo.mapping_index());
+  auto communication = formatted("{}mapping 0x{:04X}", has_cob_ids ? "no COB-ID, " : "", pdo.mapping_index());
   if (has_can_id(pdo)) {
     communication =
-        fmt::format("{} {}, {} (type {})", can_id_text(pdo, node), pdo.is_valid() ? "valid" : "not valid",
-                    transmission_text(profile, pdo.direction, pdo.type), pdo.type);
+        formatted("{} {}, {} (type {})", can_id_text(pdo, node), pdo.is_valid() ? "valid" : "not valid",
+                  transmission_text(profile, pdo.direction, pdo.type), pdo.type);
     if (pdo.inhibit.value_or(0) != 0) communication += ", at most every " + inhibit_text(*pdo.inhibit);
-    if (pdo.event.value_or(0) != 0) communication += fmt::format(", event timer {} ms", *pdo.event);
-    if (pdo.sync_start.value_or(0) != 0) communication += fmt::format(", from SYNC {} on", *pdo.sync_start);
+    if (pdo.event.value_or(0) != 0) communication += formatted(", event timer {} ms", *pdo.event);
+    if (pdo.sync_start.value_or(0) != 0) communication += formatted(", from SYNC {} on", *pdo.sync_start);
   }
-  std::string mapping = pdo.entries.empty() ? "nothing mapped" : fmt::format("{} of 64 bits:", pdo.bits());
-  if (!has_can_id(pdo) && !pdo.entries.empty()) mapping = fmt::format("{} bytes:", pdo.bits() / 8);
+  std::string mapping = pdo.entries.empty() ? "nothing mapped" : formatted("{} of 64 bits:", pdo.bits());
+  if (!has_can_id(pdo) && !pdo.entries.empty()) mapping = formatted("{} bytes:", pdo.bits() / 8);
   for (std::size_t i = 0; i < pdo.entries.size(); ++i)
-    mapping += fmt::format("{} {} ({})", i == 0 ? "" : ",", mapped_name(profile, pdo.entries[i], chinese),
-                           pdo.entries[i].bits);
+    mapping += formatted("{} {} ({})", i == 0 ? "" : ",", mapped_name(profile, pdo.entries[i], chinese),
+                         pdo.entries[i].bits);
   return {std::move(communication), std::move(mapping)};
 }
 

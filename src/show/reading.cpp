@@ -1,8 +1,8 @@
 #include "show/reading.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "canopen/node_id.hpp"
 #include "drive/assumed_unit.hpp"
@@ -25,7 +25,7 @@ std::string shortened(std::string text, std::size_t bytes) {
   if (text.size() <= kMost) return text;
   std::size_t end = kMost;
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0U) == 0x80) --end;
-  return text.substr(0, end) + fmt::format("… ({} bytes; --to FILE keeps them)", bytes);
+  return text.substr(0, end) + formatted("… ({} bytes; --to FILE keeps them)", bytes);
 }
 
 /// Asks the drives for the gear and ratings that the units of these readings need, each once.
@@ -61,7 +61,7 @@ bool is_refusal_of_one(const Reading& reading) {
 Value missing_cell(const Desk& desk, const Reading& reading) {
   const auto code = reading.bytes.error().abort_code;
   if (!is_refusal_of_one(reading) || !code) return "-";
-  return fmt::format("abort 0x{:08X} {}", *code, abort_words(desk, *code));
+  return formatted("abort 0x{:08X} {}", *code, abort_words(desk, *code));
 }
 
 /// Of a consumer heartbeat time (CiA 301, 7.5.2.19): whose heartbeat, and how long without one.
@@ -72,7 +72,7 @@ std::string watched_text(ObjectAddress object, ByteSpan bytes) {
   const auto word = load_le(bytes);
   const auto node = word >> 16U;
   if (node == 0 || node > canopen::kLastNode) return {};
-  return fmt::format(" = node {}, {} ms", node, word & 0xFFFFU);
+  return formatted(" = node {}, {} ms", node, word & 0xFFFFU);
 }
 
 List reading_row(const Desk& desk, const Reading& reading) {
@@ -102,7 +102,7 @@ List reading_row(const Desk& desk, const Reading& reading) {
   // Where the value is hexadecimal already, once is enough.
   const bool told = drive::meaning(reading.target, reading.node).bits &&
                     std::holds_alternative<std::uint64_t>(decoded.raw.data());
-  if (number && !told) hex = fmt::format("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
+  if (number && !told) hex = formatted("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
   const auto label = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
   row.insert(row.end(), {Value(decoded.text), Value(decoded.type), decoded.value, decoded.raw,
                          report::text_or_null(decoded.unit), decoded.encoding, decoded.familiar,
@@ -161,7 +161,7 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
   out.unit = std::string(meaning.unit);
   out.text = shortened(drive::plain_text(meaning, *value), bytes.size());
   if (meaning.scale != 1 && plain)
-    out.text += fmt::format(" = {} {}", plain_number(drive::scaled(meaning, *value), 12), meaning.unit);
+    out.text += formatted(" = {} {}", plain_number(drive::scaled(meaning, *value), 12), meaning.unit);
   else if (!meaning.unit.empty())
     out.text += " " + out.unit;
   auto familiar = familiar_value(meaning, *value);
@@ -178,7 +178,7 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
 FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& value) {
   const auto familiar = drive::familiar(meaning, value);
   if (!familiar) return {};
-  return {fmt::format("{} {}", plain_number(familiar->value, 7), familiar->unit),
+  return {formatted("{} {}", plain_number(familiar->value, 7), familiar->unit),
           Record{{"value", familiar->value}, {"unit", familiar->unit}}};
 }
 

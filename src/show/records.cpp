@@ -1,9 +1,9 @@
 #include "show/records.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
@@ -28,7 +28,7 @@ Value object_record(const std::optional<ObjectAddress>& object) {
 
 Value abort_record(const Error& error, std::string_view words) {
   if (!error.abort_code) return {};
-  return Record{{"code", fmt::format("0x{:08X}", *error.abort_code)},
+  return Record{{"code", formatted("0x{:08X}", *error.abort_code)},
                 {"text", words.empty() ? canopen::sdo_abort_text(*error.abort_code) : std::string(words)}};
 }
 
@@ -49,7 +49,7 @@ std::string flags_of(const od::Parameter& p) {
 
 std::string unit_text(std::string_view unit, double scale) {
   if (scale == 1) return std::string(unit);
-  return fmt::format("{}{}{}", plain_number(scale, 6), unit.empty() ? "" : " ", unit);
+  return formatted("{}{}{}", plain_number(scale, 6), unit.empty() ? "" : " ", unit);
 }
 
 std::string range_of(const od::Parameter& p) {
@@ -138,7 +138,7 @@ Value labels_record(std::span<const od::EnumLabel> labels, bool chinese) {
   if (labels.empty()) return {};
   Record out;
   for (const auto& label : labels)
-    out.push_back({fmt::format("{}", label.value), shown_name(label.label, label.label_zh, chinese)});
+    out.push_back({formatted("{}", label.value), shown_name(label.label, label.label_zh, chinese)});
   return out;
 }
 

@@ -1,7 +1,6 @@
 #include "show/registers.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "drive/naming.hpp"
 #include "session/modbus_bits.hpp"
 #include "session/modbus_network.hpp"
@@ -27,8 +26,7 @@ Alarm alarm_of(const Desk& desk, const Result<Bytes>& answer) {
   if (!answer) return {};
   const auto code = static_cast<std::uint16_t>(load_le(*answer));
   if (code == 0) return {Value("none"), Value(code)};
-  return {Value(fmt::format("0x{:04X} {}", code, alarm_words(desk.profile, desk.chinese, code))),
-          Value(code)};
+  return {Value(formatted("0x{:04X} {}", code, alarm_words(desk.profile, desk.chinese, code))), Value(code)};
 }
 
 /// What could not be read is told, and keeps nothing else from being shown.
@@ -42,9 +40,9 @@ void add_bits(Desk& desk, const Result<std::vector<bool>>& bits, std::string_vie
   std::string text;
   for (std::size_t i = 0; i < bits->size(); ++i) {
     numbers.emplace_back((*bits)[i]);
-    if ((*bits)[i]) text += fmt::format("{}{}", text.empty() ? "" : ", ", i + 1);
+    if ((*bits)[i]) text += formatted("{}{}", text.empty() ? "" : ", ", i + 1);
   }
-  out.push_back({std::string(name), text.empty() ? "none" : text, Show::text, fmt::format("{} on", name)});
+  out.push_back({std::string(name), text.empty() ? "none" : text, Show::text, formatted("{} on", name)});
   out.push_back({std::string(name), std::move(numbers), Show::json});
 }
 
@@ -97,9 +95,9 @@ report::Table register_scan(Desk& desk, std::span<const session::Identity> found
   }
   desk.notices.push_back(desk.profile == nullptr
                              ? "registers do not say what a device is: -d FAMILY says it, and shows its alarm"
-                             : fmt::format("registers do not say what a device is: that these are {} was "
-                                           "said with -d",
-                                           desk.profile->family));
+                             : formatted("registers do not say what a device is: that these are {} was "
+                                         "said with -d",
+                                         desk.profile->family));
   return table;
 }
 
@@ -120,8 +118,8 @@ Result<Value> register_info(Desk& desk, std::uint8_t node) {
   const auto& rules = desk.profile->rules;
   out.push_back(
       {"family",
-       fmt::format("{} ({} {}), as you said: registers do not say what a device is", desk.profile->family,
-                   rules.vendor, desk.chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name),
+       formatted("{} ({} {}), as you said: registers do not say what a device is", desk.profile->family,
+                 rules.vendor, desk.chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name),
        Show::text});
   add_parameters(desk, node, out);
   const auto& modbus = rules.modbus;

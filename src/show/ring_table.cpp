@@ -1,10 +1,10 @@
 #include "show/ring_table.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "session/scan.hpp"
 #include "show/identity.hpp"
@@ -46,7 +46,7 @@ std::string short_guess(std::span<const session::Guess> guesses) {
 std::string linked_ports(const ethercat::SlaveLook& look) {
   std::string out;
   for (std::size_t port = 0; port < look.ports.size(); ++port)
-    if (look.ports[port].link) append(out, fmt::format("{}", port), " ");
+    if (look.ports[port].link) append(out, formatted("{}", port), " ");
   return out;
 }
 
@@ -88,7 +88,7 @@ Value coe_of(const RingSlave& slave) {
 void count(std::string& out, unsigned number, std::string_view one, std::string_view many) {
   constexpr unsigned kEnd = 255;
   if (number > 0)
-    append(out, fmt::format("{}{} {}", number, number == kEnd ? " or more" : "", number == 1 ? one : many));
+    append(out, formatted("{}{} {}", number, number == kEnd ? " or more" : "", number == 1 ? one : many));
 }
 
 std::string port_text(const PortLook& port) {
@@ -104,18 +104,18 @@ std::string port_text(const PortLook& port) {
 void note_wire(std::vector<std::string>& out, std::uint8_t node, const ethercat::SlaveLook& look) {
   for (std::size_t port = 0; port < look.ports.size(); ++port)
     if (const auto text = port_text(look.ports[port]); !text.empty())
-      out.push_back(fmt::format("node {}: port {}: {}", node, port, text));
+      out.push_back(formatted("node {}: port {}: {}", node, port, text));
   std::string text;
   count(text, look.bad_commands, "frame it could not process", "frames it could not process");
   count(text, look.pdi_errors, "error of its own processor's access", "errors of its own processor's access");
-  if (!text.empty()) out.push_back(fmt::format("node {}: {}", node, text));
+  if (!text.empty()) out.push_back(formatted("node {}: {}", node, text));
 }
 
 }  // namespace
 
 std::string al_text(const ethercat::AlStatus& al) {
   if (!al.error) return std::string(name(al.state));
-  return fmt::format("{}, error 0x{:04X} {}", name(al.state), al.code, ethercat::al_status_text(al.code));
+  return formatted("{}, error 0x{:04X} {}", name(al.state), al.code, ethercat::al_status_text(al.code));
 }
 
 Record al_fields(const ethercat::AlStatus& al) {
@@ -202,20 +202,20 @@ report::Table ring_table(const Desk& desk, const session::RingScan& ring, std::s
 std::vector<std::string> ring_notices(const session::RingScan& ring, std::span<const std::uint8_t> nodes) {
   std::vector<std::string> out;
   if (const auto node = ring.foreign(); node != 0)
-    out.push_back(fmt::format(
+    out.push_back(formatted(
         "another master works with this ring: node {} is in {}. It was only looked at; no SII and no object was read",
         node, name(ring.slaves[node - 1U].seen.look.al.state)));
   if (ring.count > kMostNodes)
-    out.push_back(fmt::format("{} slaves are on the ring: those behind position {} have no node number",
-                              ring.count, kMostNodes));
+    out.push_back(formatted("{} slaves are on the ring: those behind position {} have no node number",
+                            ring.count, kMostNodes));
   for (const auto node : nodes) {
     const auto& slave = ring.slaves[node - 1U];
     const auto& al = slave.seen.look.al;
     if (al.error) {
       const auto hint = ethercat::al_status_hint(al.code);
-      out.push_back(fmt::format("node {}: {}{}{}", node, al_text(al), hint.empty() ? "" : "; ", hint));
+      out.push_back(formatted("node {}: {}{}{}", node, al_text(al), hint.empty() ? "" : "; ", hint));
     }
-    for (const auto& doubt : slave.doubts) out.push_back(fmt::format("node {}: SII: {}", node, doubt));
+    for (const auto& doubt : slave.doubts) out.push_back(formatted("node {}: SII: {}", node, doubt));
     note_wire(out, node, slave.seen.look);
   }
   return out;

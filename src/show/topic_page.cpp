@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/folded.hpp"
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "report/chinese_marks.hpp"
@@ -164,7 +165,7 @@ std::string lines_in_words(std::string_view line) {
 std::string object_in_words(const drive::Topic& topic) {
   if (!topic.object) return {};
   const auto object = to_string(*topic.object);
-  return topic.value ? fmt::format("{} = {}", object, *topic.value) : object;
+  return topic.value ? formatted("{} = {}", object, *topic.value) : object;
 }
 
 /// Where it comes from, and what is to be minded.
@@ -243,7 +244,7 @@ Lines topic_names(std::span<const Explanation> explanations, bool chinese, std::
       if (each.topic.kind == kind && std::find(names.begin(), names.end(), each.topic.name) == names.end())
         names.push_back(each.topic.name);
     add_hanging(pad_right(std::string(word(kind, chinese)), left + kGap),
-                fmt::format("{}", fmt::join(names, ", ")), width, out);
+                formatted("{}", fmt::join(names, ", ")), width, out);
   }
   for (auto& line : out) line = printable(line);
   return out;

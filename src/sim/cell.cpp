@@ -1,8 +1,8 @@
 #include "sim/cell.hpp"
 
-#include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "canopen/lss.hpp"
 #include "sim/cell_spec.hpp"
@@ -41,7 +41,7 @@ Result<void> apply_option(const CellSpec& spec, const CellSpec::Option& option,
   if (option.key != "silent" && option.key != "delay") {
     const std::string keys[] = {"state", "fault", "silent", "delay", "lie", "counts", "panel", "lss"};
     return spec.wrong(
-        fmt::format("'{}' is not an option of a simulated bus: use {}", option.key, one_of(keys)));
+        formatted("'{}' is not an option of a simulated bus: use {}", option.key, one_of(keys)));
   }
   const auto time = time_of(spec, option);
   if (!time) return fail(time.error());
@@ -83,8 +83,8 @@ Result<Cell> build_cell(std::string_view text, std::span<const std::filesystem::
     if (!profile) return fail(profile.error());
     for (const auto& other : cell.drives)
       if (other->node() == place.node && place.node != canopen::kUnconfigured)
-        return spec->wrong(fmt::format("node-ID {} is given twice", place.node));
-    const auto key = fmt::format("{}.{}", cell.drives.size() + 1, place.family);
+        return spec->wrong(formatted("node-ID {} is given twice", place.node));
+    const auto key = formatted("{}.{}", cell.drives.size() + 1, place.family);
     cell.drives.push_back(std::make_unique<SimDrive>(**profile, place.node, *cell.memory, key));
   }
   for (const auto& option : spec->options)

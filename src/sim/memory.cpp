@@ -1,9 +1,9 @@
 #include "sim/memory.hpp"
 
-#include <fmt/format.h>
 #include <system_error>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::sim {
@@ -32,7 +32,7 @@ Result<void> Memory::parse(std::string_view text) {
   for (const auto line : split(text, '\n')) {
     ++number;
     if (number == 1 && line != kHeader)
-      return fail(Errc::file, fmt::format("{}: not a memory of simulated drives", file_.string()),
+      return fail(Errc::file, formatted("{}: not a memory of simulated drives", file_.string()),
                   "name a file that does not exist yet");
     if (line.empty() || line.front() == '#') continue;
     const auto words = split(line, ' ');
@@ -40,7 +40,7 @@ Result<void> Memory::parse(std::string_view text) {
     const auto bytes = words.size() == 3 ? parse_hex_bytes(words[2]) : std::nullopt;
     if (!object || !bytes)
       return fail(Errc::file,
-                  fmt::format("{}:{}: expected a drive, an object and its bytes", file_.string(), number),
+                  formatted("{}:{}: expected a drive, an object and its bytes", file_.string(), number),
                   "correct the line or delete the file");
     drives_[std::string(words[0])][*object] = *bytes;
   }
@@ -52,7 +52,7 @@ Result<void> Memory::save() const {
   std::string text = std::string(kHeader) + "\n";
   for (const auto& drive : drives_)
     for (const auto& cell : drive.second)
-      text += fmt::format("{} {} {}\n", drive.first, to_string(cell.first), to_hex(cell.second, ""));
+      text += formatted("{} {} {}\n", drive.first, to_string(cell.first), to_hex(cell.second, ""));
   return write_file_atomically(file_, text);
 }
 

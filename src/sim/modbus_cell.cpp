@@ -1,9 +1,9 @@
 #include "sim/modbus_cell.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "sim/cell_spec.hpp"
@@ -54,7 +54,7 @@ Result<void> apply_modbus_option(const CellSpec& spec, const CellSpec::Option& o
   if (option.key != "silent" && option.key != "delay") {
     const std::string keys[] = {"state", "fault", "silent", "delay", "damage", "lie"};
     return spec.wrong(
-        fmt::format("'{}' is not an option of simulated Modbus drives: use {}", option.key, one_of(keys)));
+        formatted("'{}' is not an option of simulated Modbus drives: use {}", option.key, one_of(keys)));
   }
   const auto time = time_of(spec, option);
   if (!time) return fail(time.error());
@@ -121,12 +121,12 @@ Result<ModbusCell> build_modbus_cell(std::string_view text, std::span<const std:
     if (!(*profile)->rules.modbus.exists())
       return fail(
           Errc::usage,
-          fmt::format("{} has no Modbus: the rules of this family have no [modbus] section", place.family),
-          fmt::format("put it on a simulated CAN bus: sim:{}@{}", place.family, place.node));
+          formatted("{} has no Modbus: the rules of this family have no [modbus] section", place.family),
+          formatted("put it on a simulated CAN bus: sim:{}@{}", place.family, place.node));
     const auto taken = [&](const auto& unit) { return unit->unit() == place.node; };
     if (std::any_of(cell.units.begin(), cell.units.end(), taken))
-      return spec->wrong(fmt::format("address {} is given twice", place.node));
-    const auto key = fmt::format("{}.{}", cell.units.size() + 1, place.family);
+      return spec->wrong(formatted("address {} is given twice", place.node));
+    const auto key = formatted("{}.{}", cell.units.size() + 1, place.family);
     cell.units.push_back(std::make_unique<ModbusUnit>(**profile, place.node, *cell.memory, key));
     cell.units.back()->power_on(now);
   }

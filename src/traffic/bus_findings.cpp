@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/bitrate.hpp"
 #include "traffic/link_findings.hpp"
@@ -26,7 +27,7 @@ double in_seconds(Duration time) { return std::chrono::duration<double>(time).co
 std::string find_bitrate(const LinkFacts* facts) {
   if (facts == nullptr)
     return "find the bitrate: `bus detect slcan:PORT`, or `bus detect` on the machine that has the interface";
-  return fmt::format("`bus detect {0}`, and `bus up {0} --bitrate …`", facts->name);
+  return formatted("`bus detect {0}`, and `bus up {0} --bitrate …`", facts->name);
 }
 
 bool sends_in_vain(const BusPicture& picture, const LinkFacts* facts) {
@@ -52,40 +53,40 @@ void add_alone(std::vector<Finding>& out, const BusPicture& picture, const LinkF
   out.push_back(
       {Level::fault, "nobody-acknowledges",
        picture.unacknowledged() > 0
-           ? fmt::format("nobody acknowledges: {} frames in vain", picture.unacknowledged())
-           : fmt::format("nobody acknowledges: error counter tx {}, nothing was received",
-                         *facts->state.tx_errors),
+           ? formatted("nobody acknowledges: {} frames in vain", picture.unacknowledged())
+           : formatted("nobody acknowledges: error counter tx {}, nothing was received",
+                       *facts->state.tx_errors),
        "it is alone on the bus: the drives have no power, the plug or the cable is open, or they have another bitrate",
-       fmt::format(
+       formatted(
            "check power and plug, and measure 60 ohm between CAN_H and CAN_L with the power off; then {}",
            find_bitrate(facts))});
 }
 
 void add_wrong_bitrate(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
   const auto count = picture.damage() + counted_errors(facts);
-  auto text = picture.damage() > 0 ? picture.damage_text() : fmt::format("{} errors", count);
-  if (count == 0) text = fmt::format("error counter rx {}", facts->state.rx_errors.value_or(0));
+  auto text = picture.damage() > 0 ? picture.damage_text() : formatted("{} errors", count);
+  if (count == 0) text = formatted("error counter rx {}", facts->state.rx_errors.value_or(0));
   const auto means =
       facts != nullptr && facts->state.bitrate
-          ? fmt::format(
+          ? formatted(
                 "somebody talks, and nothing of it can be read: another bitrate than {}; seldom CAN_H and "
                 "CAN_L crossed, or no terminator at all",
                 drive::bitrate_text(*facts->state.bitrate))
           : std::string(
                 "somebody talks, and nothing of it can be read: another bitrate; seldom CAN_H and CAN_L "
                 "crossed, or no terminator at all");
-  out.push_back({Level::fault, "wrong-bitrate", fmt::format("errors and not one frame: {}", text), means,
-                 facts != nullptr ? fmt::format("`bus detect {}` finds the bitrate", facts->name)
-                                  : find_bitrate(facts)});
+  out.push_back(
+      {Level::fault, "wrong-bitrate", formatted("errors and not one frame: {}", text), means,
+       facts != nullptr ? formatted("`bus detect {}` finds the bitrate", facts->name) : find_bitrate(facts)});
 }
 
 void add_damage(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
   const auto count = picture.damage() > 0 ? picture.damage() : counted_errors(facts);
-  const auto text = picture.damage() > 0 ? picture.damage_text() : fmt::format("{} errors", count);
+  const auto text = picture.damage() > 0 ? picture.damage_text() : formatted("{} errors", count);
   const double share = 100.0 * static_cast<double>(count) / static_cast<double>(count + picture.frames());
   out.push_back(
       {Level::fault, "damaged-frames",
-       fmt::format("frames and errors mixed: {} among {} frames ({:.1f} %)", text, picture.frames(), share),
+       formatted("frames and errors mixed: {} among {} frames ({:.1f} %)", text, picture.frames(), share),
        "the bitrate is right, and the signal is bad: that is what a missing or a third terminator looks like, a long "
        "stub, an open shield, a common ground that is missing, or one node with another bitrate or sample point",
        "with the power off measure 60 ohm between CAN_H and CAN_L: 120 means that one terminator is missing, 40 that "
@@ -94,7 +95,7 @@ void add_damage(std::vector<Finding>& out, const BusPicture& picture, const Link
 
 void add_wires(std::vector<Finding>& out, const BusPicture& picture) {
   if (picture.wires().empty()) return;
-  out.push_back({Level::fault, "wires", fmt::format("the transceiver reports: {}", picture.wires()),
+  out.push_back({Level::fault, "wires", formatted("the transceiver reports: {}", picture.wires()),
                  "a wire is open or has a short: frames are damaged, or do not pass at all",
                  "check the two wires at the plug of the adapter and at each node"});
 }
@@ -131,7 +132,7 @@ void add_load(std::vector<Finding>& out, const BusPicture& picture, const LinkFa
   const auto peak = picture.peak_load().value_or(*load);
   out.push_back(
       {*load >= kOverload ? Level::fault : Level::note, "load",
-       fmt::format("the bus is loaded to {:.0f} %, {:.0f} % at its peak", *load, peak),
+       formatted("the bus is loaded to {:.0f} %, {:.0f} % at its peak", *load, peak),
        "frames of low priority (SDO, heartbeat) wait long or for ever",
        "`monitor --table` shows who sends most; fewer TPDOs, longer inhibit and event times, or a higher "
        "bitrate for all"});
@@ -146,19 +147,19 @@ void add_duplicates(std::vector<Finding>& out, const BusPicture& picture) {
 void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
   const auto time = in_seconds(picture.length());
   if (picture.frames() == 0) {
-    out.push_back({Level::note, "silence", fmt::format("nothing was heard in {} s", plain_number(time, 3)),
+    out.push_back({Level::note, "silence", formatted("nothing was heard in {} s", plain_number(time, 3)),
                    "drives without heartbeat and PDOs are silent until they are asked",
                    facts == nullptr ? std::string("`doctor --active` asks them")
-                                    : fmt::format("`doctor {} --active` asks them", facts->name)});
+                                    : formatted("`doctor {} --active` asks them", facts->name)});
     return;
   }
-  auto text = fmt::format("{} frames in {} s", picture.frames(), plain_number(time, 3));
-  if (const auto load = picture.load()) text += fmt::format(", load {:.1f} %", *load);
-  if (!picture.nodes().empty()) text += fmt::format("; alive: node {}", fmt::join(picture.nodes(), ", "));
+  auto text = formatted("{} frames in {} s", picture.frames(), plain_number(time, 3));
+  if (const auto load = picture.load()) text += formatted(", load {:.1f} %", *load);
+  if (!picture.nodes().empty()) text += formatted("; alive: node {}", fmt::join(picture.nodes(), ", "));
   out.push_back({Level::ok, "traffic", std::move(text), {}, {}});
   if (picture.extended() > 0)
     out.push_back(
-        {Level::note, "foreign-frames", fmt::format("{} frames have 29-bit identifiers", picture.extended()),
+        {Level::note, "foreign-frames", formatted("{} frames have 29-bit identifiers", picture.extended()),
          "of CANopen only PDOs can have them: PDOs that were set so, or another protocol on this bus",
          "`pdo show` shows the CAN-IDs that a drive has for its PDOs, `monitor` the frames; where another device "
          "is to be on this bus, the load is all that it costs"});

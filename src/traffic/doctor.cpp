@@ -1,10 +1,10 @@
 #include "traffic/doctor.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "can/link_change.hpp"
 #include "can/serial_port.hpp"
@@ -78,8 +78,8 @@ Result<std::vector<Finding>> ask_all(session::Session& session) {
          "no power, no cable, another bitrate, or all of them are stopped (NMT)",
          "`nmt preop -n all` if they may be stopped; else check power and cable, and `bus detect` for the bitrate"}};
   std::string list;
-  for (const auto node : *found) append(list, fmt::format("{}", node));
-  std::vector<Finding> out{{Level::ok, "nodes", fmt::format("answered: node {}", list), {}, {}}};
+  for (const auto node : *found) append(list, formatted("{}", node));
+  std::vector<Finding> out{{Level::ok, "nodes", formatted("answered: node {}", list), {}, {}}};
   auto* can = session.can();
   if (can == nullptr) return out;
   for (const auto node : *found)
@@ -179,7 +179,7 @@ Result<Findings> examine_link(const std::string& name, const DoctorOptions& opti
   Findings out{name};
   if (!can::is_interface(name)) {
     out.list.push_back(
-        {Level::fault, "no-interface", fmt::format("there is no interface {}", name),
+        {Level::fault, "no-interface", formatted("there is no interface {}", name),
          "no adapter is plugged in under this name, or it has no driver",
          "`bus status` lists those that there are; plug it in, then `sudo dmesg` says whether it was seen"});
     return out;

@@ -1,7 +1,8 @@
 #include "traffic/finding.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
+
+#include "base/format.hpp"
 
 namespace servoctl::traffic {
 
@@ -10,9 +11,9 @@ using report::Value;
 
 Finding two_nodes(std::uint8_t node, std::string_view noticed) {
   return {
-      Finding::Level::fault, "duplicate-node", fmt::format("two nodes have the number {}: {}", node, noticed),
+      Finding::Level::fault, "duplicate-node", formatted("two nodes have the number {}: {}", node, noticed),
       "both obey what is meant for one",
-      fmt::format(
+      formatted(
           "switch all but one of them off and give it another number: `address NEW -n {}`; drives with LSS "
           "take one by their serial numbers while both are on: `help lss set-node`",
           node)};

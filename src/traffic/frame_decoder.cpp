@@ -1,9 +1,9 @@
 #include "traffic/frame_decoder.hpp"
 
-#include <fmt/format.h>
 #include <chrono>
 #include <utility>
 
+#include "base/format.hpp"
 #include "can/controller_report.hpp"
 #include "can/error_frame.hpp"
 #include "canopen/cob_id.hpp"
@@ -41,10 +41,10 @@ std::string time_of_day(ByteSpan data) {
   const auto days = load_le(data.subspan(4, 2));
   const std::chrono::year_month_day date =
       std::chrono::sys_days(std::chrono::year(1984) / 1 / 1) + std::chrono::days(days);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", static_cast<int>(date.year()),
-                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
-                     milliseconds / 3'600'000, milliseconds / 60'000 % 60, milliseconds / 1000 % 60,
-                     milliseconds % 1000);
+  return formatted("{:04}-{:02}-{:02} {:02}:{:02}:{:02}.{:03}", static_cast<int>(date.year()),
+                   static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                   milliseconds / 3'600'000, milliseconds / 60'000 % 60, milliseconds / 1000 % 60,
+                   milliseconds % 1000);
 }
 
 }  // namespace
@@ -86,8 +86,8 @@ void FrameDecoder::decode_service(const can::Frame& frame) {
   if (frame.id == canopen::kLssRequest || frame.id == canopen::kLssAnswer) return decode_lss(frame);
   if (frame.id > kFirstPdo && frame.id < canopen::kSdoAnswer && node != 0)
     return decode_pdo(frame, node, nullptr);
-  out_.text = report::told(options_.chinese, "identifier {}, {} bytes", fmt::format("0x{:03X}", frame.id),
-                           frame.size);
+  out_.text =
+      report::told(options_.chinese, "identifier {}, {} bytes", formatted("0x{:03X}", frame.id), frame.size);
 }
 
 void FrameDecoder::decode_nmt(const can::Frame& frame) {
@@ -108,7 +108,7 @@ void FrameDecoder::decode_sync(const can::Frame& frame) {
   out_.service = "sync";
   out_.text = "SYNC";
   const auto counter = frame.remote || frame.size == 0 ? std::nullopt : std::optional(frame.data[0]);
-  if (counter) out_.text += fmt::format(" {}", *counter);
+  if (counter) out_.text += formatted(" {}", *counter);
   if (options_.fields) fields_.member("counter", counter);
 }
 
@@ -141,8 +141,8 @@ void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const 
   out_.node = node;
   if (frame.remote || view == nullptr) leave_out({"pdo", "mapping", "values"});
   if (frame.remote) {
-    out_.text = report::told(options_.chinese, "PDO {} requested by a remote frame",
-                             fmt::format("0x{:03X}", frame.id));
+    out_.text =
+        report::told(options_.chinese, "PDO {} requested by a remote frame", formatted("0x{:03X}", frame.id));
     return;
   }
   const auto data = frame.payload();
@@ -266,7 +266,7 @@ void FrameDecoder::end_sdo_fields(const canopen::SdoStep& step) {
   fields_.key("abort");
   if (step.kind != Step::abort) return fields_.null();
   fields_.begin_record();
-  fields_.member("code", fmt::format("0x{:08X}", step.abort_code));
+  fields_.member("code", formatted("0x{:08X}", step.abort_code));
   fields_.member("text", abort_words_of(step));
   fields_.end_record();
 }

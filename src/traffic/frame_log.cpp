@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/naming.hpp"
 #include "report/catalogue.hpp"
@@ -56,7 +57,7 @@ void FrameLog::begin_line(Duration time) {
   // Logs that were put together may go back behind their first line.
   const auto size = since < 0 ? -since : since;
   if (since < 0)
-    line_ += pad_left(fmt::format("-{}", size / 1'000'000), kSecondsWidth);
+    line_ += pad_left(formatted("-{}", size / 1'000'000), kSecondsWidth);
   else
     append_number(size / 1'000'000, kSecondsWidth, ' ', line_);
   line_ += '.';
@@ -102,8 +103,8 @@ void FrameLog::remark(Duration time, std::string_view service, std::optional<std
                       std::string_view text, std::string_view event) {
   if (!filter_.services.empty() && service != "alarm") return;
   if (view_ != nullptr)
-    return view_->remark(node ? fmt::format("{:.3f} s, node {}: {}", seconds(time), *node, text)
-                              : fmt::format("{:.3f} s: {}", seconds(time), text));
+    return view_->remark(node ? formatted("{:.3f} s, node {}: {}", seconds(time), *node, text)
+                              : formatted("{:.3f} s: {}", seconds(time), text));
   if (writer_.wants_records()) {
     return writer_.add_record([&](report::JsonWriter& json) {
       json.member("time", seconds(time));

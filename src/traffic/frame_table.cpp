@@ -1,7 +1,6 @@
 #include "traffic/frame_table.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "canopen/pdo.hpp"
 
 namespace servoctl::traffic {
@@ -20,12 +19,11 @@ void FrameTable::add(Duration time, const can::Frame& frame, const DecodedFrame&
   auto& rhythm = rhythms_[id];
   rhythm.add(TimePoint(time));
   const auto& intervals = rhythm.intervals();
-  const auto shown = fmt::format("{:03X}", frame.id);
-  view_->set(
-      fmt::format("{:08X}", id),
-      {shown, decoded.node ? fmt::format("{}", *decoded.node) : std::string("-"),
-       fmt::format("{}", rhythm.count()),
-       intervals.count() == 0 ? std::string() : fmt::format("{:.1f}", intervals.mean()), decoded.text});
+  const auto shown = formatted("{:03X}", frame.id);
+  view_->set(formatted("{:08X}", id),
+             {shown, decoded.node ? formatted("{}", *decoded.node) : std::string("-"),
+              formatted("{}", rhythm.count()),
+              intervals.count() == 0 ? std::string() : formatted("{:.1f}", intervals.mean()), decoded.text});
 }
 
 }  // namespace servoctl::traffic

@@ -1,8 +1,8 @@
 #include "traffic/image_pdos.hpp"
 
-#include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/ethercat_network.hpp"
 
@@ -37,12 +37,11 @@ Error no_process_data(session::Session& session, std::uint8_t node) {
   const auto state = network.records().state(node);
   return drive_error(
       Errc::negative, node,
-      fmt::format("no PDOs flow: {}", state ? fmt::format("it is in {}", network.state_word(*state))
-                                            : std::string("servoctl has not brought it to OP")),
-      fmt::format(
-          "PDOs flow in OP, and as long as servoctl keeps the drive there: `{}` at the prompt or in a "
-          "batch file, then `pdo watch`",
-          network.state_command(node, session::NodeState::operational)));
+      formatted("no PDOs flow: {}", state ? formatted("it is in {}", network.state_word(*state))
+                                          : std::string("servoctl has not brought it to OP")),
+      formatted("PDOs flow in OP, and as long as servoctl keeps the drive there: `{}` at the prompt or in a "
+                "batch file, then `pdo watch`",
+                network.state_command(node, session::NodeState::operational)));
 }
 
 }  // namespace

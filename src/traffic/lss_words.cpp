@@ -1,8 +1,7 @@
 #include "traffic/lss_words.hpp"
 
-#include <fmt/format.h>
-
 #include "base/bytes.hpp"
+#include "base/format.hpp"
 #include "canopen/lss.hpp"
 #include "drive/bitrate.hpp"
 
@@ -17,7 +16,7 @@ constexpr std::string_view kLssRanges[] = {
     "revision is at most", "serial is at least", "serial is at most"};
 
 std::string node_words(std::uint32_t node) {
-  return node == canopen::kUnconfigured ? std::string("none (255)") : fmt::format("{}", node);
+  return node == canopen::kUnconfigured ? std::string("none (255)") : formatted("{}", node);
 }
 
 int place_in(LssService service, LssService first) {
@@ -25,12 +24,11 @@ int place_in(LssService service, LssService first) {
 }
 
 std::string bit_timing_words(const can::Frame& frame) {
-  if (frame.data[1] != 0)
-    return fmt::format("LSS set bit timing {} of table {}", frame.data[2], frame.data[1]);
+  if (frame.data[1] != 0) return formatted("LSS set bit timing {} of table {}", frame.data[2], frame.data[1]);
   if (frame.data[2] == canopen::kLssAutomaticBitrate) return "LSS set bitrate: automatic detection";
   const auto bitrate = canopen::lss_bitrate(frame.data[2]);
   return bitrate ? "LSS set bitrate " + drive::bitrate_text(*bitrate)
-                 : fmt::format("LSS set bitrate: {} is reserved", frame.data[2]);
+                 : formatted("LSS set bitrate: {} is reserved", frame.data[2]);
 }
 
 std::string fastscan_words(const can::Frame& frame, std::uint32_t number) {
@@ -38,9 +36,9 @@ std::string fastscan_words(const can::Frame& frame, std::uint32_t number) {
   if (bit == canopen::kFastscanBegin) return "LSS fastscan: who has no node-ID?";
   if (bit > 31 || part > 3 || next > 3) return "LSS fastscan, with a part that CiA 305 does not define";
   if (bit == 0 && next != part)
-    return fmt::format("LSS fastscan: {} is 0x{:08X}? {}", kLssParts[part], number,
-                       next < part ? "Then it is selected" : fmt::format("Then {}", kLssParts[next]));
-  return fmt::format("LSS fastscan: {} from bit {} on as in 0x{:08X}?", kLssParts[part], bit, number);
+    return formatted("LSS fastscan: {} is 0x{:08X}? {}", kLssParts[part], number,
+                     next < part ? "Then it is selected" : formatted("Then {}", kLssParts[next]));
+  return formatted("LSS fastscan: {} from bit {} on as in 0x{:08X}?", kLssParts[part], bit, number);
 }
 
 std::string request_words(const can::Frame& frame) {
@@ -53,7 +51,7 @@ std::string request_words(const can::Frame& frame) {
     case LssService::set_node: return "LSS set node-ID " + node_words(frame.data[1]);
     case LssService::set_bit_timing: return bit_timing_words(frame);
     case LssService::activate_bit_timing:
-      return fmt::format("LSS activate bitrate after {} ms", number & 0xFFFFU);
+      return formatted("LSS activate bitrate after {} ms", number & 0xFFFFU);
     case LssService::store: return "LSS store configuration";
     case LssService::identify_unconfigured: return "LSS who has no node-ID?";
     case LssService::fastscan: return fastscan_words(frame, number);
@@ -61,17 +59,17 @@ std::string request_words(const can::Frame& frame) {
     default: break;
   }
   if (const auto i = place_in(service, LssService::select_vendor); i >= 0 && i < 4)
-    return fmt::format("LSS select: {} is 0x{:08X}", kLssParts[i], number);
+    return formatted("LSS select: {} is 0x{:08X}", kLssParts[i], number);
   if (const auto i = place_in(service, LssService::identify_vendor); i >= 0 && i < 6)
-    return fmt::format("LSS who is it whose {} 0x{:08X}?", kLssRanges[i], number);
+    return formatted("LSS who is it whose {} 0x{:08X}?", kLssRanges[i], number);
   if (const auto i = place_in(service, LssService::inquire_vendor); i >= 0 && i < 4)
-    return fmt::format("LSS inquire {}", kLssParts[i]);
-  return fmt::format("LSS request 0x{:02X}, which CiA 305 does not define", frame.data[0]);
+    return formatted("LSS inquire {}", kLssParts[i]);
+  return formatted("LSS request 0x{:02X}, which CiA 305 does not define", frame.data[0]);
 }
 
 std::string answer_words(const canopen::LssAnswer& answer) {
   const auto done = [&](std::string_view what) {
-    return answer.error == 0 ? fmt::format("LSS slave: {}", what)
+    return answer.error == 0 ? formatted("LSS slave: {}", what)
                              : "LSS slave: refused, " + canopen::lss_error_text(answer);
   };
   switch (answer.service) {
@@ -85,9 +83,9 @@ std::string answer_words(const canopen::LssAnswer& answer) {
     default: break;
   }
   if (const auto i = place_in(answer.service, LssService::inquire_vendor); i >= 0 && i < 4)
-    return fmt::format("LSS slave: {} 0x{:08X}", kLssParts[i], answer.number);
-  return fmt::format("LSS answer 0x{:02X}, which CiA 305 does not define",
-                     static_cast<unsigned>(answer.service));
+    return formatted("LSS slave: {} 0x{:08X}", kLssParts[i], answer.number);
+  return formatted("LSS answer 0x{:02X}, which CiA 305 does not define",
+                   static_cast<unsigned>(answer.service));
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "traffic/node_source.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
+#include "base/format.hpp"
 #include "session/identify.hpp"
 #include "traffic/listening.hpp"
 
@@ -53,13 +53,13 @@ bool NodeSource::renew() {
 void NodeSource::tell_end(const std::string& why) {
   if (carried_)
     tell_now(*desk_,
-             fmt::format("node {} {}: its values are read by SDO until its PDO mapping has been read again",
-                         node_, why));
+             formatted("node {} {}: its values are read by SDO until its PDO mapping has been read again",
+                       node_, why));
 }
 
 void NodeSource::tell_renewal() {
   if (carried_)
-    tell_now(*desk_, fmt::format("node {}: its PDO mapping was read again, and its TPDOs are used", node_));
+    tell_now(*desk_, formatted("node {}: its PDO mapping was read again, and its TPDOs are used", node_));
 }
 
 /// Another drive may have been connected meanwhile.
@@ -73,8 +73,8 @@ void NodeSource::check_identity() {
   if (change.empty() && both_named && now->device_name != identity_->device_name) change = "its name (1008h)";
   if (change.empty()) return;
   tell_now(*desk_,
-           fmt::format("node {} is a different drive now ({} differs): end this command and start it again",
-                       node_, change));
+           formatted("node {} is a different drive now ({} differs): end this command and start it again",
+                     node_, change));
   identity_ = *now;
 }
 

@@ -1,8 +1,7 @@
 #include "traffic/recording.hpp"
 
-#include <fmt/format.h>
-
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::traffic {
@@ -35,7 +34,7 @@ std::vector<std::string> notices(std::string_view path, const Strays& strays) {
   const auto& words = strays.records ? kRecords : kLines;
   const auto tell = [&](std::size_t count, std::string_view one, std::string_view several) {
     if (count > 0)
-      out.push_back(fmt::format(fmt::runtime(count == 1 ? one : several), path, count, strays.first));
+      out.push_back(formatted(fmt::runtime(count == 1 ? one : several), path, count, strays.first));
   };
   tell(strays.unknown, words.no_frame, words.no_frames);
   tell(strays.unsuited, words.unsuited, words.several_unsuited);
@@ -45,7 +44,7 @@ std::vector<std::string> notices(std::string_view path, const Strays& strays) {
 Result<void> check_damage(std::string_view path, const Strays& strays) {
   if (!strays.damage) return {};
   return fail(Errc::file,
-              fmt::format("{} is damaged at byte {}: {}", path, strays.damage->offset, strays.damage->what),
+              formatted("{} is damaged at byte {}: {}", path, strays.damage->offset, strays.damage->what),
               "was it copied before it was complete? What stands in front of that byte is read");
 }
 
@@ -61,16 +60,16 @@ Result<void> check_channel(std::string_view path, std::string_view recording, st
   if (channel.empty() ? frames.size() < 2 : frames.count(std::string(channel)) > 0) return {};
   const auto list = can::list_of(frames);
   if (!channel.empty())
-    return fail(Errc::usage, fmt::format("{} has no frame of {}", path, channel),
-                fmt::format("it has frames of {}", list));
-  return fail(Errc::usage, fmt::format("{} has frames of several buses: {}", path, list),
-              fmt::format("sent on one bus they would mean something else: name one, `--channel {}`",
-                          frames.begin()->first));
+    return fail(Errc::usage, formatted("{} has no frame of {}", path, channel),
+                formatted("it has frames of {}", list));
+  return fail(Errc::usage, formatted("{} has frames of several buses: {}", path, list),
+              formatted("sent on one bus they would mean something else: name one, `--channel {}`",
+                        frames.begin()->first));
 }
 
 tl::unexpected<Error> no_frames(std::string_view path) {
   return fail(
-      Errc::file, fmt::format("{} contains no CAN frames", path),
+      Errc::file, formatted("{} contains no CAN frames", path),
       "a recording is a candump file (`--trace FILE` writes `candump -L`), .asc, .trc, .blf, or a pcap or "
       "pcapng of a CAN interface");
 }

@@ -1,10 +1,10 @@
 #include "traffic/replay_plan.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <numeric>
 
+#include "base/format.hpp"
 #include "canopen/cob_id.hpp"
 #include "canopen/lss.hpp"
 #include "canopen/nmt.hpp"
@@ -115,7 +115,7 @@ class Choice {
       if (!looks_like_tpdo(frame)) return "RPDO";
       return drives_->pdos.empty() ? "PDO of unknown direction" : "";
     }
-    return write && can_move(*write) ? fmt::format("write of {}", name_of(*write)) : "";
+    return write && can_move(*write) ? formatted("write of {}", name_of(*write)) : "";
   }
 
   bool can_move(ObjectAddress object) const {
@@ -131,11 +131,11 @@ class Choice {
       const auto message = canopen::parse_nmt(frame);
       const bool reset = message && (message->command == canopen::NmtCommand::reset_node ||
                                      message->command == canopen::NmtCommand::reset_communication);
-      return reset ? fmt::format("NMT {}", canopen::name(message->command)) : "";
+      return reset ? formatted("NMT {}", canopen::name(message->command)) : "";
     }
     if (!write || !lasts(*write)) return "";
     const bool stores = write->index == objects::kStoreIndex;
-    return fmt::format(fmt::runtime(stores ? "store by {}" : "write of {}"), name_of(*write));
+    return formatted(fmt::runtime(stores ? "store by {}" : "write of {}"), name_of(*write));
   }
 
   bool lasts(ObjectAddress object) const {
@@ -159,9 +159,7 @@ class Choice {
            std::any_of(rules.store.restore.begin(), rules.store.restore.end(), sets);
   }
 
-  std::string name_of(ObjectAddress object) const {
-    return drive::target_at(profile_, object).in_sentence();
-  }
+  std::string name_of(ObjectAddress object) const { return drive::target_at(profile_, object).in_sentence(); }
 
   /// Whom a frame that can move reaches; NMT to all and SYNC reach everyone.
   void add_nodes(const can::Frame& frame, const DecodedFrame& decoded, const show::PdoView* view) {
@@ -237,8 +235,8 @@ std::string kinds_text(const FrameKinds& kinds) {
   std::string out;
   std::size_t told = 0;
   for (const auto& [kind, count] : kinds) {
-    if (told == kMostKinds) return out + fmt::format(", and {} other kinds", kinds.size() - told);
-    out += fmt::format("{}{} {}", told++ == 0 ? "" : ", ", count, kind);
+    if (told == kMostKinds) return out + formatted(", and {} other kinds", kinds.size() - told);
+    out += formatted("{}{} {}", told++ == 0 ? "" : ", ", count, kind);
   }
   return out;
 }

@@ -1,8 +1,8 @@
 #include "traffic/ring_findings.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 
@@ -16,7 +16,7 @@ using Seen = session::EtherCatNetwork::Seen;
 constexpr unsigned kEnd = 255;
 
 void add_count(std::string& out, unsigned number, std::string_view what) {
-  if (number > 0) append(out, fmt::format("{}{} {}", number, number == kEnd ? " or more" : "", what));
+  if (number > 0) append(out, formatted("{}{} {}", number, number == kEnd ? " or more" : "", what));
 }
 
 template <class Port>
@@ -43,14 +43,14 @@ void add_ports(std::vector<Finding>& out, std::size_t node, const Seen& first, c
     const bool now = counts_on(before, after);
     if (!text.empty())
       out.push_back({now ? Level::fault : Level::note, now ? "port-errors" : "port-had-errors",
-                     fmt::format("node {}, port {}: {}{}", node, port, text, now ? ", and counting" : ""),
+                     formatted("node {}, port {}: {}{}", node, port, text, now ? ", and counting" : ""),
                      now ? "the link at this port fails, or frames are damaged on its cable"
                          : "counted since the drive was switched on; none came meanwhile",
-                     fmt::format("check plug and cable at this port of node {} and at its neighbour", node)});
+                     formatted("check plug and cable at this port of node {} and at its neighbour", node)});
     if (after.link && !after.open)
       out.push_back(
           {Level::fault, "port-closed",
-           fmt::format("node {}, port {}: a cable is plugged in, but frames do not go out there", node, port),
+           formatted("node {}, port {}: a cable is plugged in, but frames do not go out there", node, port),
            "what stands behind it is not reached", "check the slave at the other end of that cable"});
   }
 }
@@ -60,26 +60,25 @@ void add_count_of_slaves(std::vector<Finding>& out, const RingFacts& facts) {
     out.push_back(
         {Level::ok,
          "slaves",
-         fmt::format("{} slave{} on the ring all the time ({} s)", facts.most, facts.most == 1 ? "" : "s",
-                     plain_number(std::chrono::duration<double>(facts.length).count(), 3)),
+         formatted("{} slave{} on the ring all the time ({} s)", facts.most, facts.most == 1 ? "" : "s",
+                   plain_number(std::chrono::duration<double>(facts.length).count(), 3)),
          {},
          {}});
     return;
   }
-  out.push_back(
-      {Level::fault, "slaves-come-and-go",
-       fmt::format("between {} and {} slaves answered", facts.least, facts.most),
-       fmt::format("node {} and those behind it come and go: a loose plug, or a drive that restarts",
-                   facts.least + 1),
-       fmt::format("check power of node {} and the cable between node {} and node {}", facts.least + 1,
-                   facts.least, facts.least + 1)});
+  out.push_back({Level::fault, "slaves-come-and-go",
+                 formatted("between {} and {} slaves answered", facts.least, facts.most),
+                 formatted("node {} and those behind it come and go: a loose plug, or a drive that restarts",
+                           facts.least + 1),
+                 formatted("check power of node {} and the cable between node {} and node {}",
+                           facts.least + 1, facts.least, facts.least + 1)});
 }
 
 void add_frames(std::vector<Finding>& out, const RingFacts& facts) {
   if (facts.lost == 0 && facts.damaged == 0) return;
   out.push_back({Level::fault, "lost-frames",
-                 fmt::format("{} of {} frames did not come back, {} came back damaged", facts.lost,
-                             facts.sent, facts.damaged),
+                 formatted("{} of {} frames did not come back, {} came back damaged", facts.lost, facts.sent,
+                           facts.damaged),
                  "a cable or plug of the ring, or a network card that is used by something else too",
                  "the port whose counters go on tells where; `scan` lists them"});
 }
@@ -93,16 +92,15 @@ std::vector<Finding> ring_findings(const RingFacts& facts) {
   for (std::size_t i = 0; i < std::min(facts.first.size(), facts.last.size()); ++i) {
     add_ports(out, i + 1, facts.first[i], facts.last[i]);
     if (facts.last[i].look.al.error)
-      out.push_back({Level::fault, "al-error", fmt::format("node {} reports an error of its AL state", i + 1),
-                     "it has left the state it was to be in", fmt::format("`status -n {}` names it", i + 1)});
+      out.push_back({Level::fault, "al-error", formatted("node {} reports an error of its AL state", i + 1),
+                     "it has left the state it was to be in", formatted("`status -n {}` names it", i + 1)});
   }
   return out;
 }
 
 Finding no_ring(const std::string& url, std::optional<bool> link, const Error& error) {
   if (link == false)
-    return {Level::fault, "no-link", fmt::format("{} has no link", url),
-            "no cable, or nobody at its other end",
+    return {Level::fault, "no-link", formatted("{} has no link", url), "no cable, or nobody at its other end",
             "check the cable to the first slave (its IN), and that the slave has power"};
   return {
       Level::fault, "no-answer", error.message,

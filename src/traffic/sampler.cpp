@@ -1,12 +1,12 @@
 #include "traffic/sampler.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "base/csv.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "drive/assumed_unit.hpp"
 #include "session/measure.hpp"
@@ -58,12 +58,12 @@ std::optional<Quantity> quantity(const Channel& channel, ByteSpan bytes) {
 
 Error no_number(const Channel& channel, const std::string& why) {
   return show::located(
-      make_error(Errc::usage, fmt::format("{} is not numeric and cannot be plotted: {}", channel.name, why),
+      make_error(Errc::usage, formatted("{} is not numeric and cannot be plotted: {}", channel.name, why),
                  "`read` and `watch` show it"),
       channel.node, channel.target.address);
 }
 
-Value rounded(double number) { return parse_real(fmt::format("{:.9g}", number)).value_or(number); }
+Value rounded(double number) { return parse_real(formatted("{:.9g}", number)).value_or(number); }
 
 }  // namespace
 
@@ -149,7 +149,7 @@ std::vector<Sample> Sampler::take() {
 Result<void> check_number(const Channel& channel) {
   const auto meaning = drive::meaning(channel.target, channel.node);
   if (!meaning.type_known || od::is_integer(meaning.type) || od::is_real(meaning.type)) return {};
-  return fail(no_number(channel, fmt::format("it is of type {}", od::name(meaning.type))));
+  return fail(no_number(channel, formatted("it is of type {}", od::name(meaning.type))));
 }
 
 Result<void> check_number(const Channel& channel, ByteSpan bytes) {
@@ -188,7 +188,7 @@ void ChannelRecord::add(double seconds, const Sample& sample) {
   if (!number) return;
   series_.unit = number->unit;
   series_.name = channel_->name;
-  if (channel_->several_nodes) series_.name += fmt::format(" (node {})", channel_->node);
+  if (channel_->several_nodes) series_.name += formatted(" (node {})", channel_->node);
   series_.seconds.push_back(seconds);
   series_.values.push_back(number->value);
   statistics_.add(number->value);
@@ -246,7 +246,7 @@ std::string series_csv(std::span<const Series> series) {
       cells[i] = plain_number(series[i].values[k], 12);
     }
   for (const auto& [seconds, cells] : lines) {
-    out += fmt::format("{:.6f}", seconds);
+    out += formatted("{:.6f}", seconds);
     for (const auto& cell : cells) out += ',' + cell;
     out += '\n';
   }

@@ -1,5 +1,6 @@
 #include "traffic/sdo_words.hpp"
 
+#include "base/format.hpp"
 #include "report/told.hpp"
 
 namespace servoctl::traffic {
@@ -36,7 +37,7 @@ std::string step_text(const SdoStep& step, const std::string& object, std::strin
     case SdoStep::Kind::abort:
       return report::told(chinese,
                           step.from_client ? "abort {} by the master: {} {}" : "abort {} by the node: {} {}",
-                          object, fmt::format("0x{:08X}", step.abort_code), abort);
+                          object, formatted("0x{:08X}", step.abort_code), abort);
     case SdoStep::Kind::unknown: break;
   }
   return std::string(chinese ? report::chinese_word("no SDO of CiA 301") : "no SDO of CiA 301");

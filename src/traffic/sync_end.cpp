@@ -1,7 +1,6 @@
 #include "traffic/sync_end.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/option_scope.hpp"
@@ -19,7 +18,7 @@ std::string warning(session::Session& session, std::uint8_t node) {
   const auto mode = session.upload(node, objects::kModeDisplay);
   const bool known = mode && mode->size() == 1;
   if (known && (mode->front() < kFirstCyclicMode || mode->front() > kLastCyclicMode)) return {};
-  return fmt::format(
+  return formatted(
       "node {} is energised{}: without SYNC it gets no new targets and, depending on the drive, holds, runs "
       "on or faults; `disable -n {}`",
       node, known ? " in a mode that follows SYNC" : ", and its mode cannot be read", node);
@@ -35,7 +34,7 @@ SyncEnd end_sync(session::Session& session) {
     if (auto text = warning(session, node); !text.empty()) out.warnings.push_back(std::move(text));
   const auto& production = *session.can()->sync();
   if (production.foreign > 0)
-    out.warnings.push_back(fmt::format(
+    out.warnings.push_back(formatted(
         "another producer sent {} SYNCs meanwhile: the period was irregular for drives", production.foreign));
   out.table.columns = rhythm_columns();
   out.table.columns.push_back({"missed"});

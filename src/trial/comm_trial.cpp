@@ -1,9 +1,9 @@
 #include "trial/comm_trial.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/run_delay.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
@@ -102,7 +102,7 @@ class Communication {
   std::string own_note() const {
     if (most_taken_off_ == Duration::zero()) return {};
     const auto ms = milliseconds_of(most_taken_off_);
-    return say(fmt::format("without up to {:.0f} ms for which this computer was busy", ms));
+    return say(formatted("without up to {:.0f} ms for which this computer was busy", ms));
   }
 
   void judge_round_trips() {
@@ -113,9 +113,9 @@ class Communication {
     }
     auto lost = report::at_most("lost_answers", say("lost answers"), lost_, 0);
     const auto judged = sent_ - missed_;
-    lost.note = say(fmt::format("in {} reads", judged));
+    lost.note = say(formatted("in {} reads", judged));
     if (missed_ > 0)
-      lost.note += say(fmt::format("; {} more were not judged: this computer was busy", missed_));
+      lost.note += say(formatted("; {} more were not judged: this computer was busy", missed_));
     if (sent_ < test_.count) lost.note += say(", then given up");
     out_.criteria.push_back(std::move(lost));
     out_.criteria.push_back(report::at_most("wrong_answers", say("protocol violations"), wrong_, 0));
@@ -178,7 +178,7 @@ class Communication {
       worst = std::max(worst, (off < Duration::zero() ? -off : off) - own[i] - own[i - 1]);
     }
     auto present = report::at_least("heartbeat", name, static_cast<double>(heard.size()), kHeartbeats);
-    present.note = fmt::format("0x1017: {}", to_string(period));
+    present.note = formatted("0x1017: {}", to_string(period));
     out_.criteria.push_back(std::move(present));
     if (heard.size() < 2) return {};
     const auto allowed = std::max<Duration>(

@@ -1,8 +1,8 @@
 #include "trial/drive_report.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "report/catalogue.hpp"
 #include "report/chinese_marks.hpp"
@@ -42,13 +42,13 @@ Value told(const show::Desk& desk, Value value) {
 
 std::string test_name(const show::Desk& desk, const std::string& test) {
   if (!desk.chinese) return test;
-  return report::chinese_marks(fmt::format("{} ({})", report::in_chinese(test + " test"), test));
+  return report::chinese_marks(formatted("{} ({})", report::in_chinese(test + " test"), test));
 }
 
 /// `Bus main (can0)`
 std::string title_of(const BusReport& bus) {
-  return bus.name == bus.url ? fmt::format("{} {}", bus.found.title, bus.url)
-                             : fmt::format("{} {} ({})", bus.found.title, bus.name, bus.url);
+  return bus.name == bus.url ? formatted("{} {}", bus.found.title, bus.url)
+                             : formatted("{} {} ({})", bus.found.title, bus.name, bus.url);
 }
 
 /// What tells the drive from those of other buses and families; empty where there are none.
@@ -67,8 +67,8 @@ report::Page::Section test_section(const show::Desk& desk, const TestResult& tes
   const Value origin(test.origin);
   if (const auto* time = report::find(origin, "time"))
     record.insert(record.begin(), {"time", *time, Show::text, say(desk, "tested at")});
-  return {report::chinese_marks(fmt::format("{}: {}", test_name(desk, test.test),
-                                            passed(test) ? say(desk, "passed") : say(desk, "FAILED"))),
+  return {report::chinese_marks(formatted("{}: {}", test_name(desk, test.test),
+                                          passed(test) ? say(desk, "passed") : say(desk, "FAILED"))),
           4, told(desk, std::move(record))};
 }
 

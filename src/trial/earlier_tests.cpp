@@ -1,10 +1,10 @@
 #include "trial/earlier_tests.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
 #include "session/open_bus.hpp"
@@ -88,7 +88,7 @@ std::optional<TestResult> test_of(const show::Desk& desk, const Value& value) {
 }
 
 tl::unexpected<Error> no_tests(std::string_view file) {
-  return fail(Errc::file, fmt::format("{} contains no test results", file),
+  return fail(Errc::file, formatted("{} contains no test results", file),
               "such a file is written by `test … --json >FILE`");
 }
 
@@ -134,7 +134,7 @@ Result<void> add_tests(const show::Desk& desk, const Value& document, std::strin
   if (auto last = broken_off(document, tests)) {
     if (last->node == 0)
       return fail(Errc::file,
-                  fmt::format("{}: the test did not run: {}", file, text(&last->criteria.front().figure)),
+                  formatted("{}: the test did not run: {}", file, text(&last->criteria.front().figure)),
                   "run it again, or leave this --tests out");
     tests.push_back(std::move(*last));
     auto axis = text(find(*find(document, "error"), "axis"));
@@ -151,7 +151,7 @@ std::optional<std::string> otherness(const show::Desk& desk, const TestResult& t
                                      const session::Identity& drive) {
   const Value origin(test.origin);
   const auto family = text(find(origin, "family"));
-  if (!family.empty() && family != desk.profile->family) return fmt::format("it was a {}", family);
+  if (!family.empty() && family != desk.profile->family) return formatted("it was a {}", family);
   const auto* record = find(origin, "identity");
   const auto identity = record == nullptr ? std::nullopt : show::identity_of(*record, test.node);
   if (!identity || record->is_null()) return std::nullopt;
@@ -164,8 +164,8 @@ std::optional<std::string> otherness(const show::Desk& desk, const TestResult& t
 Error other_drive(const TestResult& test, const std::string& what) {
   const auto time = text(find(Value(test.origin), "time"));
   return drive_error(Errc::refused, test.node,
-                     fmt::format("`test {}`{} was run on another drive: {}", test.test,
-                                 time.empty() ? "" : " of " + time, what),
+                     formatted("`test {}`{} was run on another drive: {}", test.test,
+                               time.empty() ? "" : " of " + time, what),
                      "leave this --tests out, or test the present drive");
 }
 
@@ -211,7 +211,7 @@ Result<void> check_tested(show::Desk& desk, const std::vector<TestResult>& tests
       const auto what = otherness(desk, test, drive);
       if (!what)
         desk.notices.push_back(
-            fmt::format("node {}: `test {}` does not say which drive it was run on", test.node, test.test));
+            formatted("node {}: `test {}` does not say which drive it was run on", test.node, test.test));
       else if (!what->empty())
         return fail(other_drive(test, *what));
     }

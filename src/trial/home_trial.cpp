@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "drive/standard_objects.hpp"
 #include "trial/figures.hpp"
 #include "trial/motion_trial.hpp"
@@ -112,11 +112,11 @@ class Homings {
 };
 
 std::string homing_text(motion::Motion& motion, const motion::MotionPlan& plan, const HomeTrial& test) {
-  auto out = fmt::format("{}, {} times, for {} at most each", plan.summary, test.repeat,
-                         servoctl::to_string(plan.longest));
+  auto out = formatted("{}, {} times, for {} at most each", plan.summary, test.repeat,
+                       servoctl::to_string(plan.longest));
   const auto& units = motion.units();
   if (const auto window = motion.limits().travel)
-    out += fmt::format(", {} at most", units.words(*window, units.unit(objects::kPositionActual)));
+    out += formatted(", {} at most", units.words(*window, units.unit(objects::kPositionActual)));
   return out;
 }
 
@@ -140,7 +140,7 @@ Result<MotionTrial> test_home(show::Desk& desk, const motion::MotionRequest& req
   Homings homings(desk, test);
   const auto plan = [&](motion::Motion& motion) {
     auto planned = motion::plan_home(motion, homings.home());
-    if (planned) planned->summary += fmt::format(", {} times", test.repeat);
+    if (planned) planned->summary += formatted(", {} times", test.repeat);
     return planned;
   };
   return run_test_motion(

@@ -1,9 +1,9 @@
 #include "trial/io_trial.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/stretch.hpp"
@@ -32,23 +32,23 @@ class InputNames {
 
   std::string id(unsigned bit) const {
     const auto function = function_of(bit);
-    return function ? std::string(kIds[*function]) : fmt::format("bit{}", bit);
+    return function ? std::string(kIds[*function]) : formatted("bit{}", bit);
   }
   std::string name(unsigned bit) const {
     const auto function = function_of(bit);
     // In English as they are typed.
     if (!desk_->speaks_chinese()) return id(bit);
-    return say(*desk_, function ? std::string(kNames[*function]) : fmt::format("bit {}", bit));
+    return say(*desk_, function ? std::string(kNames[*function]) : formatted("bit {}", bit));
   }
   Result<unsigned> parse(std::string_view word) const {
     std::vector<std::string> words;
     for (unsigned bit = 0; bit < kBits; ++bit) {
-      if (equals_nocase(word, id(bit)) || equals_nocase(word, fmt::format("bit{}", bit))) return bit;
+      if (equals_nocase(word, id(bit)) || equals_nocase(word, formatted("bit{}", bit))) return bit;
       words.push_back(id(bit));
     }
     auto hint = did_you_mean(word, words);
     if (hint.empty()) hint = "use negative-limit, positive-limit, home, or bit0 to bit31 of 60FDh";
-    return fail(Errc::usage, fmt::format("'{}' is not an input", word), std::move(hint));
+    return fail(Errc::usage, formatted("'{}' is not an input", word), std::move(hint));
   }
 
  private:
@@ -117,7 +117,7 @@ class InputWatch {
                   {"level", level},
                   {"actuated", on}};
     const auto text = say(*desk_, on ? "actuated" : "not actuated");
-    desk_->emit(record, fmt::format("{:10.3f}  {} {} ({})", seconds_of(time), names_.name(bit), level, text));
+    desk_->emit(record, formatted("{:10.3f}  {} {} ({})", seconds_of(time), names_.name(bit), level, text));
     if (desk_->keeps_samples) events_.emplace_back(std::move(record));
   }
 
@@ -137,7 +137,7 @@ class InputWatch {
                              both ? "0, 1" : say(*desk_, high ? "only 1" : "only 0"), "0, 1");
     if (changes_[bit] > 0)
       out.note = say(*desk_, changes_[bit] == 1 ? std::string("changed once")
-                                                : fmt::format("changed {} times", changes_[bit]));
+                                                : formatted("changed {} times", changes_[bit]));
     return out;
   }
 

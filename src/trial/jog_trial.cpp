@@ -1,8 +1,8 @@
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "session/stretch.hpp"
 #include "trial/motion_trial.hpp"
@@ -82,14 +82,14 @@ class Direction {
 
  private:
   std::string id(std::string_view name) const {
-    return fmt::format("{}_{}", name, forward_ ? "forward" : "backward");
+    return formatted("{}_{}", name, forward_ ? "forward" : "backward");
   }
   std::string title(std::string_view english) const {
-    return forward_ ? say(*desk_, fmt::format("forward: {}", english))
-                    : say(*desk_, fmt::format("backward: {}", english));
+    return forward_ ? say(*desk_, formatted("forward: {}", english))
+                    : say(*desk_, formatted("backward: {}", english));
   }
   /// More digits than the sensors have say nothing.
-  static double rounded(double number) { return parse_real(fmt::format("{:.4g}", number)).value_or(number); }
+  static double rounded(double number) { return parse_real(formatted("{:.4g}", number)).value_or(number); }
   double commanded() const { return forward_ ? plan_->value : -plan_->value; }
   std::string unit(Signal signal) const {
     for (const auto& series : done_->series)
@@ -214,9 +214,9 @@ Result<MotionTrial> test_jog(show::Desk& desk, const motion::MotionRequest& requ
     auto planned = motion::plan_jog(motion, jog);
     if (planned)
       planned->summary =
-          fmt::format("turn at {} {} for {}, then back{}{}", number_text(planned->value), planned->unit,
-                      to_string(test.length),
-                      test.then.empty() ? "" : "; behind that, after a second question, ", test.then);
+          formatted("turn at {} {} for {}, then back{}{}", number_text(planned->value), planned->unit,
+                    to_string(test.length),
+                    test.then.empty() ? "" : "; behind that, after a second question, ", test.then);
     if (const auto back = planned ? motion.units().bytes(objects::kTargetVelocity, -planned->value)
                                   : std::optional<Bytes>()) {
       const auto rest = planned->moving.back();

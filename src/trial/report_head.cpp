@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/calendar.hpp"
+#include "base/format.hpp"
 #include "base/version.hpp"
 #include "session/open_bus.hpp"
 #include "trial/verdict.hpp"
@@ -17,8 +18,8 @@ using report::Value;
 
 std::string count_text(const show::Desk& desk, const TestCount& tests) {
   const auto passed = tests.all - tests.failed;
-  if (tests.failed == 0) return say(desk, fmt::format("{} passed", passed));
-  return say(desk, fmt::format("{} passed, {} FAILED", passed, tests.failed));
+  if (tests.failed == 0) return say(desk, formatted("{} passed", passed));
+  return say(desk, formatted("{} passed, {} FAILED", passed, tests.failed));
 }
 
 /// What a part of it says for people; null where it says nothing.
@@ -34,8 +35,8 @@ Value field_of(const DriveReport& drive, std::string_view part, std::string_view
 
 std::string family_text(const show::Desk& desk) {
   const auto& rules = desk.profile->rules;
-  return fmt::format("{} ({} {})", desk.profile->family, rules.vendor,
-                     desk.chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name);
+  return formatted("{} ({} {})", desk.profile->family, rules.vendor,
+                   desk.chinese && !rules.name_zh.empty() ? rules.name_zh : rules.name);
 }
 
 /// What the desks have of it, each once.
@@ -43,7 +44,7 @@ std::string of_all(std::span<const show::Desk* const> desks, std::string (*text)
   std::vector<std::string> out;
   for (const auto* desk : desks)
     if (const auto one = text(*desk); std::find(out.begin(), out.end(), one) == out.end()) out.push_back(one);
-  return fmt::format("{}", fmt::join(out, ", "));
+  return formatted("{}", fmt::join(out, ", "));
 }
 
 std::string url_of(const show::Desk& desk) { return desk.session->url(); }
@@ -64,7 +65,7 @@ Record report_head(std::span<const show::Desk* const> desks, const ReportCover& 
           {"logo", std::move(logo), Show::json},
           {"signatures", cover.signatures.empty() ? Value() : Value(std::move(signatures)), Show::json},
           {"time", utc_now_text(), all, say(desk, "made at")},
-          {"tool", fmt::format("servoctl {}", version()), all, say(desk, "made with")},
+          {"tool", formatted("servoctl {}", version()), all, say(desk, "made with")},
           {"bus_text", of_all(desks, url_of), Show::text, say(desk, "bus")},
           {"family_text", of_all(desks, family_text), Show::text, say(desk, "drive family")},
           {"tests_text", count_text(desk, tests), Show::text, say(desk, "tests")},

@@ -1,10 +1,10 @@
 #include "trial/verdict.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/calendar.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "report/catalogue.hpp"
 #include "report/line.hpp"
 #include "show/identity.hpp"
@@ -64,10 +64,10 @@ Error failure(const TestResult& result) {
   std::string what;
   for (const auto& c : result.criteria)
     if (c.verdict == Verdict::failed)
-      what += fmt::format("{}{}: {}", what.empty() ? "" : ". ", c.name, report::in_words(c));
+      what += formatted("{}{}: {}", what.empty() ? "" : ". ", c.name, report::in_words(c));
   return drive_error(
       Errc::negative, result.node,
-      fmt::format("test {} failed: {}", result.test, what.empty() ? "nothing could be tested" : what));
+      formatted("test {} failed: {}", result.test, what.empty() ? "nothing could be tested" : what));
 }
 
 report::Record verdict_record(const show::Desk& desk, const TestResult& result, Show plot) {

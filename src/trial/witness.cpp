@@ -1,9 +1,9 @@
 #include "trial/witness.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/calendar.hpp"
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "base/version.hpp"
@@ -49,7 +49,7 @@ class Tour {
       if (!out_.ended && !faulty && in_fault())
         out_.ended =
             drive_error(Errc::negative, node_,
-                        fmt::format("the drive went into fault after {} objects were read", at + count),
+                        formatted("the drive went into fault after {} objects were read", at + count),
                         "`fault show` says why; the file says what was read until then");
     }
     if (out_.answers.empty() && out_.ended) return fail(*out_.ended);
@@ -152,11 +152,11 @@ class Tour {
 report::List answers_of(const Witness& witness) {
   report::List out;
   for (const auto& answer : witness.answers)
-    out.emplace_back(report::Record{
-        {"object", to_string(answer.object)},
-        {"size", answer.size ? report::Value(*answer.size) : report::Value()},
-        {"abort",
-         answer.abort_code ? report::Value(fmt::format("0x{:08X}", *answer.abort_code)) : report::Value()}});
+    out.emplace_back(
+        report::Record{{"object", to_string(answer.object)},
+                       {"size", answer.size ? report::Value(*answer.size) : report::Value()},
+                       {"abort", answer.abort_code ? report::Value(formatted("0x{:08X}", *answer.abort_code))
+                                                   : report::Value()}});
   return out;
 }
 
@@ -195,12 +195,12 @@ report::Record witness_document(const show::Desk& desk, const Witness& witness) 
   const auto& profile = *desk.profile;
   return {{"servoctl_witness", 1},
           {"time", utc_now_text()},
-          {"tool", fmt::format("servoctl {}", version())},
+          {"tool", formatted("servoctl {}", version())},
           {"family", profile.of_file ? std::string("a file") : profile.family},
           {"provenance", show::provenance_record(drive::provenance_of(profile))},
           {"network", ring ? "EtherCAT" : "CAN"},
           {"identity", std::move(identity)},
-          {"modes", witness.modes ? report::Value(fmt::format("0x{:08X}", *witness.modes)) : report::Value()},
+          {"modes", witness.modes ? report::Value(formatted("0x{:08X}", *witness.modes)) : report::Value()},
           {"verdict", name(witness.verdict.kind)},
           {"why", witness.verdict.why},
           {"write_only", witness.write_only},

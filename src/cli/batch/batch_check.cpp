@@ -1,9 +1,9 @@
 #include "cli/batch/batch_check.hpp"
 
-#include <fmt/format.h>
 #include <unordered_map>
 #include <unordered_set>
 
+#include "base/format.hpp"
 #include "cli/output_files.hpp"
 #include "cli/parse.hpp"
 #include "cli/restriction.hpp"
@@ -95,7 +95,7 @@ class Check {
     context.drive_folders = shell_->drive_folders();
     if (settings.drive.empty()) {
       if (!includes(command.needs, Needs::dictionary)) return {};
-      return fail(Errc::usage, fmt::format("'{}' needs the drive family", command.path),
+      return fail(Errc::usage, formatted("'{}' needs the drive family", command.path),
                   "add -d FAMILY, or a line `drive FAMILY` before it; `drives` lists families");
     }
     const auto profile = shell_->profile(settings.drive);

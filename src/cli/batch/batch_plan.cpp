@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/duration.hpp"
+#include "base/format.hpp"
 #include "cli/batch/gateway_line.hpp"
 
 namespace servoctl::cli {
@@ -48,7 +49,7 @@ class Planner {
   Result<void> count() {
     if (++taken_ <= kMostTaken) return {};
     full_ = true;
-    return fail(Errc::usage, fmt::format("the loops make more than {} lines", kMostTaken),
+    return fail(Errc::usage, formatted("the loops make more than {} lines", kMostTaken),
                 "use one file per machine or group of axes, run one after the other");
   }
 
@@ -58,7 +59,7 @@ class Planner {
     if (text_ <= kMostText) return {};
     full_ = true;
     return fail(Errc::usage,
-                fmt::format("with its variables expanded the file exceeds {} MiB", kMostText >> 20U),
+                formatted("with its variables expanded the file exceeds {} MiB", kMostText >> 20U),
                 "is a variable too long?");
   }
 
@@ -170,7 +171,7 @@ class Planner {
     full_ = full_ || errors_.size() == kMostErrors;
   }
 
-  std::string round() const { return fmt::format("{}", fmt::join(rounds_, " ")); }
+  std::string round() const { return formatted("{}", fmt::join(rounds_, " ")); }
 
   Variables variables_;
   const std::filesystem::path* folder_;

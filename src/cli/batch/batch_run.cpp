@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/signal_wait.hpp"
 #include "base/timespec.hpp"
@@ -59,9 +60,9 @@ class BatchRun {
   int finish() {
     const auto left = count_ - done_ - failed_;
     if (!settings_.json) {
-      const auto said = fmt::format("{}: {} of {} lines done", printable(*file_), done_, count_) +
-                        (failed_ > 0 ? fmt::format(", {} failed", failed_) : "") +
-                        (left > 0 ? fmt::format(", {} not run", left) : "");
+      const auto said = formatted("{}: {} of {} lines done", printable(*file_), done_, count_) +
+                        (failed_ > 0 ? formatted(", {} failed", failed_) : "") +
+                        (left > 0 ? formatted(", {} not run", left) : "");
       shell_->console().note(shell_->console().in_language(said) + "\n");
       return first_error_ ? exit_code(first_error_->code) : 0;
     }
@@ -110,7 +111,7 @@ class BatchRun {
 
   Outcome pause(const Step& step) {
     Outcome out{.command = "pause", .settings = shell_->defaults()};
-    const auto text = fmt::format("{}", fmt::join(step.words, " "));
+    const auto text = formatted("{}", fmt::join(step.words, " "));
     if (!shell_->console().can_ask()) {
       out.notices.push_back("no terminal, pause skipped: " + text);
       return out;
@@ -225,7 +226,7 @@ int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file
 }
 
 Error at_line(const std::string& file, std::uint32_t line, Error error) {
-  error.message = fmt::format("{}:{}: {}", file, line, error.message);
+  error.message = formatted("{}:{}: {}", file, line, error.message);
   if (!error.line) error.line = line;
   return error;
 }

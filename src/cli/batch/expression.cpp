@@ -1,10 +1,9 @@
 #include "cli/batch/expression.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "cli/batch/result_path.hpp"
@@ -88,7 +87,7 @@ class Lexer {
       if (const auto taken = take(out.text); !taken) return fail(taken.error());
     // A lone `!` would never be passed.
     if (out.text.empty())
-      return fail(Errc::usage, fmt::format("'{}' compares nothing", text_[at_]), std::string(kExample));
+      return fail(Errc::usage, formatted("'{}' compares nothing", text_[at_]), std::string(kExample));
     return out;
   }
 
@@ -150,7 +149,7 @@ Result<std::vector<Compared>> sides(const Operand& operand, const report::Value&
       continue;
     }
     const auto list = elements(part.value);
-    if (!list) return fail(Errc::negative, fmt::format("{} is not a list and cannot be counted", part.where));
+    if (!list) return fail(Errc::negative, formatted("{} is not a list and cannot be counted", part.where));
     out.push_back({part.where == "." ? "count" : "count(" + part.where + ")", list->size()});
   }
   return out;
@@ -203,22 +202,22 @@ Result<bool> compare(const Compared& left, Comparator comparator, const Compared
   if (comparator == Comparator::unequal) return text(left.value) != text(right.value);
   const auto& wrong = a ? right : left;
   return fail(Errc::negative,
-              fmt::format("{}{} is not a number: {} cannot compare it", wrong.where,
-                          wrong.where.empty() ? text(wrong.value) : " (" + report::to_json(wrong.value) + ")",
-                          symbol(comparator)));
+              formatted("{}{} is not a number: {} cannot compare it", wrong.where,
+                        wrong.where.empty() ? text(wrong.value) : " (" + report::to_json(wrong.value) + ")",
+                        symbol(comparator)));
 }
 
 std::string shown(const Compared& side) { return side.word ? text(side.value) : report::to_json(side.value); }
 
 tl::unexpected<Error> refuted(const Compared& left, Comparator comparator, const Compared& right) {
   if (comparator == Comparator::holds)
-    return fail(Errc::negative, fmt::format("{} is {}, expected true", left.where, shown(left)));
+    return fail(Errc::negative, formatted("{} is {}, expected true", left.where, shown(left)));
   const auto expected =
       (comparator == Comparator::contains ? std::string("~") : std::string(symbol(comparator))) + " " +
       (right.where.empty() ? "" : right.where + " = ") + shown(right);
   return fail(Errc::negative, left.where.empty()
-                                  ? fmt::format("{} {} is not true", shown(left), expected)
-                                  : fmt::format("{} is {}, expected {}", left.where, shown(left), expected));
+                                  ? formatted("{} {} is not true", shown(left), expected)
+                                  : formatted("{} is {}, expected {}", left.where, shown(left), expected));
 }
 
 }  // namespace
@@ -245,7 +244,7 @@ Result<Expression> parse_expression(std::string_view text, const VariableLookup&
     if (!token) return fail(token.error());
     if (token->kind == Token::Kind::end) return out;
     if (token->kind != Token::Kind::word || token->text != "and")
-      return fail(Errc::usage, fmt::format("'{}' does not belong here", token->text),
+      return fail(Errc::usage, formatted("'{}' does not belong here", token->text),
                   "join comparisons with `and`; put text with blanks in quotes");
   }
 }
@@ -255,7 +254,7 @@ std::string to_string(const Expression& expression) {
   for (const auto& comparison : expression) {
     append(out, written(comparison.left), " and ");
     if (comparison.comparator != Comparator::holds)
-      out += fmt::format(" {} {}", symbol(comparison.comparator), written(comparison.right));
+      out += formatted(" {} {}", symbol(comparison.comparator), written(comparison.right));
   }
   return out;
 }

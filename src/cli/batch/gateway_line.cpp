@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/object_address.hpp"
 #include "base/text.hpp"
@@ -74,12 +75,12 @@ Result<Words> command(const Request& line) {
       break;
     default: break;
   }
-  return wrong(fmt::format("'{}' is not understood", fmt::join(line.words, " ")));
+  return wrong(formatted("'{}' is not understood", fmt::join(line.words, " ")));
 }
 
 Result<Words> set_default(const Request& line) {
   const auto number = line.words.size() == 3 ? gateway::parse_unsigned(line.words[2]) : std::nullopt;
-  if (!number) return wrong(fmt::format("'set {}' takes a number", line.words[1]));
+  if (!number) return wrong(formatted("'set {}' takes a number", line.words[1]));
   if (line.words[1] == "node") return Words{"use", *number == 0 ? "all" : std::to_string(*number)};
   if (*number != 1) return wrong("servoctl works on one bus: the network can only be 1");
   return Words{};
@@ -88,8 +89,8 @@ Result<Words> set_default(const Request& line) {
 Result<Words> translate(const Request& line) {
   if (line.words.empty()) return wrong("a command is missing");
   if (line.numbers.size() == 2 && line.numbers.front() != 1)
-    return wrong(fmt::format("network {}: servoctl works on one bus, the network can only be 1",
-                             line.numbers.front()));
+    return wrong(
+        formatted("network {}: servoctl works on one bus, the network can only be 1", line.numbers.front()));
   if (line.verb() == "set" && line.words.size() > 1) return set_default(line);
   auto out = command(line);
   if (!out || line.numbers.empty()) return out;

@@ -1,7 +1,6 @@
 #include "cli/batch/setting_lines.hpp"
 
-#include <fmt/format.h>
-
+#include "base/format.hpp"
 #include "cli/batch/batch.hpp"
 #include "cli/batch/batch_plan.hpp"
 #include "cli/terminal/prompt_words.hpp"
@@ -11,7 +10,7 @@ namespace {
 
 tl::unexpected<Error> in_line(const std::string& file, std::uint32_t line, Error error) {
   error.code = Errc::file;
-  error.message = fmt::format("{}:{}: {}", file, line, error.message);
+  error.message = formatted("{}:{}: {}", file, line, error.message);
   error.line = line;
   return fail(std::move(error));
 }
@@ -47,7 +46,7 @@ Result<std::vector<settings::SettingLine>> setting_lines(Shell& shell, std::stri
   for (const auto& step : plan.steps) {
     if (step.kind != Step::Kind::command || is_exit(step.words))
       return in_line(file, step.line,
-                     fail(Errc::file, fmt::format("'{}' writes no value", step.text),
+                     fail(Errc::file, formatted("'{}' writes no value", step.text),
                           "a batch file read as settings may only contain lines that write")
                          .value());
     auto next = chosen(shell, chosen_now, step.words);
@@ -58,7 +57,7 @@ Result<std::vector<settings::SettingLine>> setting_lines(Shell& shell, std::stri
     const bool foreign = out.empty() && match_command(step.words).command == nullptr;
     if (!line && foreign && !line.error().hint.starts_with("did you mean"))
       return fail(Errc::file,
-                  fmt::format("{} is neither a backup, a DCF, a table nor a list of command lines", file),
+                  formatted("{} is neither a backup, a DCF, a table nor a list of command lines", file),
                   "`backup FILE` writes a file that can be read here");
     if (!line) return in_line(file, step.line, line.error());
     line->line = step.line;

@@ -1,10 +1,10 @@
 #include "cli/batch/variables.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
 #include "base/csv.hpp"
 #include "base/file.hpp"
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "cli/batch/batch.hpp"
@@ -25,10 +25,10 @@ struct Assignment {
 Result<Assignment> parse_assignment(std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos || !is_variable_name(text.substr(0, equals)))
-    return fail(Errc::usage, fmt::format("'{}' is not NAME=VALUE", text),
+    return fail(Errc::usage, formatted("'{}' is not NAME=VALUE", text),
                 "a name has letters, digits and _; put a value with blanks in quotes: NAME=\"two words\"");
   if (text.size() - equals > kLongestValue)
-    return fail(Errc::usage, fmt::format("the value of {} is too long", text.substr(0, equals)));
+    return fail(Errc::usage, formatted("the value of {} is too long", text.substr(0, equals)));
   return Assignment{std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }
 
@@ -66,9 +66,9 @@ Result<void> add_word(std::vector<LoopItem>& out, const std::string& word) {
   }
   for (const auto& range : ranges) {
     if (range.last < range.first)
-      return fail(Errc::usage, fmt::format("'{}' runs backwards", word), "write 5-8, not 8-5");
+      return fail(Errc::usage, formatted("'{}' runs backwards", word), "write 5-8, not 8-5");
     if (range.last - range.first >= kLongestList || out.size() >= kLongestList)
-      return fail(Errc::usage, fmt::format("'{}' is too long a list", word));
+      return fail(Errc::usage, formatted("'{}' is too long a list", word));
     for (auto i = range.first; i <= range.last; ++i) out.push_back({std::to_string(i)});
   }
   return {};
@@ -84,7 +84,7 @@ Result<std::vector<LoopItem>> rows(const std::string& file, const std::filesyste
                 "one line per pass of the loop is needed");
   std::vector<LoopItem> out;
   for (const auto& row : table->rows) {
-    LoopItem item{row.cells.front(), fmt::format("{}:{}", file, row.line)};
+    LoopItem item{row.cells.front(), formatted("{}:{}", file, row.line)};
     for (std::size_t i = 0; i < row.cells.size(); ++i)
       item.cells.emplace_back(trim(table->columns[i]), trim(row.cells[i]));
     out.push_back(std::move(item));
@@ -120,8 +120,8 @@ Result<std::string> Variables::value(std::string_view name) const {
   std::vector<std::string> known;
   for (const auto& entry : values_) known.push_back(entry.first);
   auto hint = did_you_mean(name, known);
-  if (hint.empty()) hint = fmt::format("`set {0}=VALUE`, or --var {0}=VALUE on the command line", name);
-  return fail(Errc::usage, fmt::format("unknown variable ${{{}}}", name), std::move(hint));
+  if (hint.empty()) hint = formatted("`set {0}=VALUE`, or --var {0}=VALUE on the command line", name);
+  return fail(Errc::usage, formatted("unknown variable ${{{}}}", name), std::move(hint));
 }
 
 Result<std::vector<LoopItem>> loop_items(std::span<const std::string> words,

@@ -1,13 +1,12 @@
 #include "cli/terminal/ascii_form.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
 #include <cstdlib>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
 
@@ -52,8 +51,8 @@ std::string form_of(char32_t c) {
   const auto* form =
       std::find_if(kForms.begin(), kForms.end(), [&](const Form& one) { return one.sign == c; });
   if (form != kForms.end()) return std::string(form->ascii);
-  return c > 0xFFFF ? fmt::format("\\U{:08X}", static_cast<std::uint32_t>(c))
-                    : fmt::format("\\u{:04X}", static_cast<std::uint32_t>(c));
+  return c > 0xFFFF ? formatted("\\U{:08X}", static_cast<std::uint32_t>(c))
+                    : formatted("\\u{:04X}", static_cast<std::uint32_t>(c));
 }
 
 }  // namespace
@@ -75,7 +74,7 @@ std::string ascii_form(std::string_view text) {
   while (!text.empty()) {
     const auto c = decode_utf8(text);
     const auto shown =
-        c.value ? form_of(*c.value) : fmt::format("\\x{:02X}", static_cast<std::uint8_t>(text[0]));
+        c.value ? form_of(*c.value) : formatted("\\x{:02X}", static_cast<std::uint8_t>(text[0]));
     if (text[0] == '\n') too_wide = 0;
     const auto width = c.value ? columns(*c.value) : 1;
     if (shown.size() > width && text[0] != '\n' && text[0] != '\t') too_wide += shown.size() - width;

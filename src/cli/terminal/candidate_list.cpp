@@ -1,8 +1,8 @@
 #include "cli/terminal/candidate_list.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 
@@ -22,7 +22,7 @@ std::size_t widest(std::span<const Candidate> candidates) {
 bool says_little(std::string_view word) { return word.find_first_of("0123456789") != std::string_view::npos; }
 
 std::string more_row(std::size_t count, std::size_t columns) {
-  return clip(fmt::format("... {} more: type another letter", count), columns - 1);
+  return clip(formatted("... {} more: type another letter", count), columns - 1);
 }
 
 std::vector<std::string> rows_with_hints(std::span<const Candidate> candidates, std::size_t columns) {

@@ -1,10 +1,10 @@
 #include "cli/terminal/candidates.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "command/prompt_words.hpp"
@@ -125,7 +125,7 @@ void Candidates::add_values(const command::Command* command, const command::Para
   if (is_name && place_.family.empty())
     note_ = "-d FAMILY before it tells which names there are";
   else if (!parameter.help.empty())
-    note_ = fmt::format("{}: {}", parameter.name, parameter.help);
+    note_ = formatted("{}: {}", parameter.name, parameter.help);
 }
 
 void Candidates::add_kind(const command::Command* command, const command::Parameter& parameter,

@@ -1,9 +1,9 @@
 #include "cli/terminal/line_editor.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
@@ -166,9 +166,9 @@ std::string LineEditor::say(std::string_view text) const {
 
 std::string LineEditor::waiting_note() const {
   if (pasted_.empty()) return {};
-  return say(pasted_.size() == 1 ? "(1 more line waits: Enter runs this one, Ctrl-C drops all)"
-                                 : fmt::format("({} more lines wait: Enter runs this one, Ctrl-C drops all)",
-                                               pasted_.size()));
+  return say(pasted_.size() == 1
+                 ? "(1 more line waits: Enter runs this one, Ctrl-C drops all)"
+                 : formatted("({} more lines wait: Enter runs this one, Ctrl-C drops all)", pasted_.size()));
 }
 
 /// False when the key ends the search and still has to be obeyed.
@@ -241,8 +241,8 @@ LineScreen::Picture LineEditor::picture() const {
   if (!out.below.empty() && out.below.back().starts_with("... ")) out.below.back() = say(out.below.back());
   if (!note_.empty()) out.below.push_back(clip(note_, columns - 1));
   if (search_)
-    out.prompt.text = say(search_->found ? fmt::format("(search '{}')", search_->text)
-                                         : fmt::format("(not found: '{}')", search_->text)) +
+    out.prompt.text = say(search_->found ? formatted("(search '{}')", search_->text)
+                                         : formatted("(not found: '{}')", search_->text)) +
                       " ";
   if (!pasted_.empty()) out.below.push_back(clip(waiting_note(), columns - 1));
   if (host_.is_ascii && host_.is_ascii()) put_into_ascii(out, columns);

@@ -1,8 +1,8 @@
 #include "cli/terminal/line_screen.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
 
@@ -89,7 +89,7 @@ std::string LineScreen::wipe(Screen::Size size) {
     up += breaks(row, row.size(), columns);
   }
   shown_.rows.clear();
-  return (up == 0 ? std::string("\r") : fmt::format("\x1B[{}A\r", up)) + "\x1B[J";
+  return (up == 0 ? std::string("\r") : formatted("\x1B[{}A\r", up)) + "\x1B[J";
 }
 
 std::string LineScreen::show(const Picture& picture, Screen::Size size) {
@@ -106,9 +106,9 @@ std::string LineScreen::show(const Picture& picture, Screen::Size size) {
   for (std::size_t i = 0; i < now.rows.size(); ++i) out += (i == 0 ? "" : "\r\n") + now.rows[i].text;
   const auto below = now.rows.size() - 1 - now.cursor_row;
   if (below > 0 || now.cursor_column != now.rows.back().width) {
-    if (below > 0) out += fmt::format("\x1B[{}A", below);
+    if (below > 0) out += formatted("\x1B[{}A", below);
     out += "\r";
-    if (now.cursor_column > 0) out += fmt::format("\x1B[{}C", now.cursor_column);
+    if (now.cursor_column > 0) out += formatted("\x1B[{}C", now.cursor_column);
   }
   shown_ = std::move(now);
   return out;

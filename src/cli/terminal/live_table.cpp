@@ -1,12 +1,12 @@
 #include "cli/terminal/live_table.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <numeric>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/terminal/ascii_form.hpp"
@@ -159,7 +159,7 @@ std::string LiveTable::footer(std::size_t first, std::size_t shown) const {
   std::string out(paused_ ? "PAUSED  " : "");
   out += kKeys;
   if (shown < shown_.size())
-    out += fmt::format("  up, down: rows {} to {} of {}", first + 1, first + shown, shown_.size());
+    out += formatted("  up, down: rows {} to {} of {}", first + 1, first + shown, shown_.size());
   return out;
 }
 

@@ -1,8 +1,8 @@
 // Where a line goes: buses, nodes, axes and families.
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "can/serial_port.hpp"
 #include "can/socketcan.hpp"
@@ -80,7 +80,7 @@ void Candidates::add_cells(std::size_t begin) {
       note_ = "node-ID, then `,FAMILY@NODE` or `?state=FILE`";
       // A shell puts its own quotes around the sign; who types it has to know of them.
       if (begun_.back() >= '0' && begun_.back() <= '9')
-        for (const auto& option : kCellOptions) add(fmt::format("{}?{}", begun_, option.begin), option.hint);
+        for (const auto& option : kCellOptions) add(formatted("{}?{}", begun_, option.begin), option.hint);
       return;
     }
     const auto before = begun_.substr(0, piece);
@@ -126,7 +126,7 @@ std::map<std::uint8_t, std::string> Candidates::known_nodes() {
       for (const auto& place : cell->places) out[place.node] = "simulated " + place.family;
   if (const auto cabinet = shell_->cabinet(place_.settings); cabinet && *cabinet != nullptr)
     for (const auto& axis : (*cabinet)->axes)
-      if (axis.bus == bus) out[axis.node] = fmt::format("{}, {}", axis.name, axis.family);
+      if (axis.bus == bus) out[axis.node] = formatted("{}, {}", axis.name, axis.family);
   return out;
 }
 
@@ -155,7 +155,7 @@ void Candidates::add_axes() {
   const auto before = list_before();
   const auto group = begin_group(Candidate::Group::places);
   for (const auto& axis : (*cabinet)->axes)
-    add(before + axis.name, fmt::format("axis: {} node {}, {}", axis.bus, axis.node, axis.family));
+    add(before + axis.name, formatted("axis: {} node {}, {}", axis.bus, axis.node, axis.family));
   for (const auto& name : (*cabinet)->names()) add(before + name, "group of axes");
   begin_group(group);
 }

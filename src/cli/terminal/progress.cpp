@@ -1,10 +1,11 @@
 #include "cli/terminal/progress.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
+
+#include "base/format.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -22,29 +23,29 @@ constexpr std::size_t kParts = 1000;
 /// `[###...]  25%` of a total above 0.
 std::string bar(std::size_t done, std::size_t total) {
   const auto filled = std::min(kBarWidth, kBarWidth * done / total);
-  return fmt::format("[{}{}] {:3}%", std::string(filled, '#'), std::string(kBarWidth - filled, '.'),
-                     std::min<std::size_t>(100, 100 * done / total));
+  return formatted("[{}{}] {:3}%", std::string(filled, '#'), std::string(kBarWidth - filled, '.'),
+                   std::min<std::size_t>(100, 100 * done / total));
 }
 
 double seconds_of(Duration time) { return std::chrono::duration<double>(time).count(); }
 
 std::string elapsed_text(double seconds) {
-  if (seconds < 10) return fmt::format("{:.1f} s so far", seconds);
-  if (seconds < 60) return fmt::format("{:.0f} s so far", std::floor(seconds));
+  if (seconds < 10) return formatted("{:.1f} s so far", seconds);
+  if (seconds < 60) return formatted("{:.0f} s so far", std::floor(seconds));
   const auto whole = static_cast<long>(seconds);
-  return fmt::format("{} min {} s so far", whole / 60, whole % 60);
+  return formatted("{} min {} s so far", whole / 60, whole % 60);
 }
 
 /// Of what may be over before.
 std::string most_text(double seconds) {
-  if (seconds < 120) return fmt::format("{:.0f} s at most", seconds);
-  return fmt::format("{:.0f} min at most", std::ceil(seconds / 60));
+  if (seconds < 120) return formatted("{:.0f} s at most", seconds);
+  return formatted("{:.0f} min at most", std::ceil(seconds / 60));
 }
 
 std::string line_of(std::size_t done, std::optional<std::size_t> total, double bytes_per_second) {
-  const auto rate = fmt::format("{:.1f} kB/s", bytes_per_second / 1000);
-  if (!total || *total == 0) return fmt::format("{} bytes, {}", done, rate);
-  return fmt::format("{} of {} bytes, {}", bar(done, *total), *total, rate);
+  const auto rate = formatted("{:.1f} kB/s", bytes_per_second / 1000);
+  if (!total || *total == 0) return formatted("{} bytes, {}", done, rate);
+  return formatted("{} of {} bytes, {}", bar(done, *total), *total, rate);
 }
 
 /// How long it goes on if it goes on as it did; empty where too little of it is known, or nothing is left.
@@ -52,8 +53,8 @@ std::string time_left(std::size_t done, std::size_t total, double elapsed) {
   constexpr double kLeastKnown = 0.9;
   if (done == 0 || done >= total || elapsed < kLeastKnown) return {};
   const auto seconds = std::ceil(elapsed * static_cast<double>(total - done) / static_cast<double>(done));
-  if (seconds < 60) return fmt::format("{:.0f} s left", seconds);
-  return fmt::format("{:.0f} min left", std::ceil(seconds / 60));
+  if (seconds < 60) return formatted("{:.0f} s left", seconds);
+  return formatted("{:.0f} min left", std::ceil(seconds / 60));
 }
 
 }  // namespace
@@ -80,7 +81,7 @@ void Progress::update_list(std::size_t done, std::size_t total, TimePoint now) {
   told_ = now;
   if (!is_due(now)) return;
   const std::chrono::duration<double> elapsed = now - *begin_;
-  show(fmt::format("{} ({}/{})", bar(done, total), done, total), time_left(done, total, elapsed.count()));
+  show(formatted("{} ({}/{})", bar(done, total), done, total), time_left(done, total, elapsed.count()));
 }
 
 void Progress::update_wait(const session::Stretch* stretch, TimePoint now) {

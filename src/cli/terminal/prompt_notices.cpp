@@ -1,7 +1,8 @@
 #include "cli/terminal/prompt_notices.hpp"
 
-#include <fmt/format.h>
 #include <utility>
+
+#include "base/format.hpp"
 
 namespace servoctl::cli {
 namespace {
@@ -25,8 +26,8 @@ void PromptNotices::hear(Shell& shell) {
 
 std::vector<std::string> PromptNotices::give() {
   if (left_out_ > 0)
-    waiting_.push_back(fmt::format("{} messages were not shown: the output was not read in time",
-                                   std::exchange(left_out_, 0)));
+    waiting_.push_back(formatted("{} messages were not shown: the output was not read in time",
+                                 std::exchange(left_out_, 0)));
   return std::exchange(waiting_, {});
 }
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include <set>
 
+#include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "cli/batch/batch_command.hpp"
@@ -119,9 +120,9 @@ bool place_of_axes(Shell& shell, const Settings& settings, Parts& parts, std::ve
     families.insert(axis->family);
     if (bus != nullptr) places.push_back({bus->url, axis->node, axis->name, axis->family});
   }
-  parts.bus = fmt::format("{}", fmt::join(buses, ","));
+  parts.bus = formatted("{}", fmt::join(buses, ","));
   parts.nodes = settings.nodes;
-  parts.family = fmt::format("{}", fmt::join(families, ","));
+  parts.family = formatted("{}", fmt::join(families, ","));
   return true;
 }
 
@@ -131,7 +132,7 @@ void place_of_nodes(Shell& shell, const Settings& settings, Parts& parts, std::v
   parts.bus = settings.bus.substr(0, settings.bus.find('?'));
   if (!settings.nodes.empty())
     parts.nodes =
-        nodes ? in_language(fmt::format("node {}", settings.nodes), settings.chinese) : settings.nodes;
+        nodes ? in_language(formatted("node {}", settings.nodes), settings.chinese) : settings.nodes;
   // What the cabinet file says of the node holds for the lines.
   const auto of_axis = family_in_cabinet(settings, shell);
   const auto family = of_axis.empty() ? shell.family_in_use() : of_axis;
@@ -139,7 +140,7 @@ void place_of_nodes(Shell& shell, const Settings& settings, Parts& parts, std::v
   for (const auto node : nodes.value_or(std::vector<std::uint8_t>()))
     if (node != 0)
       places.push_back(
-          {settings.bus, node, in_language(fmt::format("node {}", node), settings.chinese), family});
+          {settings.bus, node, in_language(formatted("node {}", node), settings.chinese), family});
 }
 
 /// Of one node its state; of several those that are in fault. The answer: whether any is.
@@ -193,7 +194,7 @@ Result<void> check_family_of_axis(Shell& shell, const Settings& settings) {
   const auto family = family_in_cabinet(settings, shell);
   if (family.empty() || family == settings.drive) return {};
   return fail(Errc::usage,
-              fmt::format("{} is {} by the cabinet file, not {}", settings.nodes, family, settings.drive),
+              formatted("{} is {} by the cabinet file, not {}", settings.nodes, family, settings.drive),
               "`use` chooses other nodes; or change `family` in the file");
 }
 
@@ -202,8 +203,8 @@ void tell_left(Shell& shell, const Settings& next) {
   const auto& now = shell.defaults();
   const auto tell = [&](std::string_view what, const std::string& before, const std::string& after) {
     if (!before.empty() && after.empty())
-      shell.console().note(fmt::format("notice: {} {} is no longer chosen: the cabinet file says otherwise\n",
-                                       what, printable(before)));
+      shell.console().note(formatted("notice: {} {} is no longer chosen: the cabinet file says otherwise\n",
+                                     what, printable(before)));
   };
   tell("bus", now.bus, next.bus);
   tell("drive family", now.drive, next.drive);
@@ -229,8 +230,8 @@ Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::
   const auto* word = find_place_word(words);
   if (word == nullptr) return defaults;
   if (words.size() != 2)
-    return fail(Errc::usage, fmt::format("'{}' takes one argument", word->name),
-                fmt::format("`{}`: {}", command::prompt_usage(*word), word->summary));
+    return fail(Errc::usage, formatted("'{}' takes one argument", word->name),
+                formatted("`{}`: {}", command::prompt_usage(*word), word->summary));
   if (const auto allowed = check_restricted(*word, words[1]); !allowed) return fail(allowed.error());
   if (word->name == "use") {
     if (const auto known = check_nodes(shell, defaults, words[1]); !known) return fail(known.error());

@@ -1,9 +1,9 @@
 #include "cli/terminal/terminal_view.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "cli/terminal/signals.hpp"
 
@@ -97,7 +97,7 @@ std::string TerminalView::to_top(Screen::Size size) const {
   if (height_ == 0) return std::string(kToLeft);
   if (alternate_) return std::string(kHome);
   if (size_ != size) return "\r\n" + std::string(size.rows, '\n') + std::string(kHome);
-  return fmt::format("\r\033[{}A", height_);
+  return formatted("\r\033[{}A", height_);
 }
 
 void TerminalView::draw() {
@@ -120,7 +120,7 @@ void TerminalView::draw() {
 
 void TerminalView::step_aside() {
   if (height_ == 0 || alternate_) return;
-  screen_.write(fmt::format("\r\033[{}A{}", height_, kRestOfScreen));
+  screen_.write(formatted("\r\033[{}A{}", height_, kRestOfScreen));
   height_ = 0;
 }
 

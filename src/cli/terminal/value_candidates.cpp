@@ -1,8 +1,8 @@
 // Names and values of objects and panel parameters, as the data of the family has them.
-#include <fmt/format.h>
 #include <algorithm>
 #include <array>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cli/terminal/candidates.hpp"
 #include "drive/naming.hpp"
@@ -42,7 +42,7 @@ const std::string& name_in(bool chinese, const std::string& name, const std::str
 }
 
 std::string address_of(ObjectAddress address, bool plain) {
-  return plain ? fmt::format("0x{:04X}", address.index) : to_string(address);
+  return plain ? formatted("0x{:04X}", address.index) : to_string(address);
 }
 
 /// As `begun` goes on: `0x6099:1`, or `6099h.1` where no `0x` was begun.
@@ -50,7 +50,7 @@ std::string address_like(std::string_view begun, ObjectAddress address, bool pla
   auto out = address_of(address, plain);
   if (begun == "0" || begun.starts_with("0x") || begun.starts_with("0X")) return out;
   const auto sub = plain ? std::string() : "." + out.substr(out.find(':') + 1);
-  return fmt::format("{:04X}h{}", address.index, sub);
+  return formatted("{:04X}h{}", address.index, sub);
 }
 
 bool begins_as_number(std::string_view text) {
@@ -203,7 +203,7 @@ void Candidates::add_words_of(const command::Command& command, const command::Pa
   };
   if (is("", "pdo"))
     for (const auto* side : {"RPDO", "TPDO"})
-      for (int i = 1; i <= 4; ++i) add(fmt::format("{}{}", side, i));
+      for (int i = 1; i <= 4; ++i) add(formatted("{}{}", side, i));
   if (is("", "--bitrate") || is("lss set-bitrate", "rate"))
     for (const auto* rate : {"125k", "250k", "500k", "1M"}) add(rate);
   if (is("sim", "drives")) add_cells(0);

@@ -1,10 +1,10 @@
 #include "cli/terminal/window_reader.hpp"
 
-#include <fmt/format.h>
 #include <algorithm>
 #include <cstddef>
 #include <string>
 
+#include "base/format.hpp"
 #include "base/text.hpp"
 #include "cli/terminal/signals.hpp"
 
@@ -25,7 +25,7 @@ class WindowReader {
 
   /// Where it stands, and what the keys do, in the last row.
   void show_place() const {
-    console_->show_progress(console_->in_language(fmt::format(
+    console_->show_progress(console_->in_language(formatted(
         "-- line {} of {}; Space goes on, Enter by a line, q ends --", lines_ - count_lines(rest_), lines_)));
   }
 
