@@ -13,11 +13,11 @@ What else is in the program
 ===========================
 
 ")
-if(PACKAGES MATCHES "libnl")
-  string(APPEND text "servoctl is linked statically with libraries below. libnl and the GNU C library are under the
+if(PACKAGES MATCHES "libc6")
+  string(APPEND text "The program of the tarball is linked statically with libraries below. libnl and the GNU C library are under the
 GNU Lesser General Public License 2.1: you may change them, link the program anew with them, and take it apart for that. The sources
-of servoctl, which are free, are all that is needed: build them with your own archives (cmake --preset static), or
-against the shared libraries of the system (cmake --preset release). Who hands on the program hands on, or offers, the sources of servoctl in
+of servoctl, which are free, are all that is needed: build them with your own archives, or against the
+shared libraries of the system (cmake --preset release makes both programs). Who hands on the program hands on, or offers, the sources of servoctl in
 this version and of these two libraries; Debian has the latter as the source packages named below (apt-get source NAME=VERSION).
 The GNU C++ library is under the GNU General Public License 3 with the GCC Runtime Library Exception 3.1, which lets programs be
 linked with it under any terms.

@@ -50,11 +50,9 @@ for release in "${releases[@]}"; do
   take_source "$release"
   if [ "$what" = tests ]; then inside "$release" "cd /servoctl; ./dev test"; fi
   inside "$release" "cd /servoctl; ./dev package; tests/real/clean_root_test.sh build/release/servoctl build/release
-    for preset in arm64 arm64-static; do
-      cmake --preset \$preset >/dev/null
-      cmake --build --preset \$preset -j \$(nproc) >/dev/null
-      DEB_HOST_ARCH=arm64 cpack --config build/\$preset/CPackConfig.cmake -B build/package >/dev/null
-    done
+    cmake --preset arm64 >/dev/null
+    cmake --build --preset arm64 -j \$(nproc) >/dev/null
+    DEB_HOST_ARCH=arm64 cpack --config build/arm64/CPackConfig.cmake -B build/package >/dev/null
     rm -rf build/package/_CPack_Packages
     DEB_HOST_ARCH=arm64 tests/real/clean_root_test.sh build/arm64/servoctl build/arm64"
   if [ "$what" = tests ]; then inside "$release" "cd /servoctl; ctest --preset arm64 -j \$(nproc) -R '^Program'"; fi

@@ -1,11 +1,9 @@
 #!/usr/bin/env bash
 # Packs what was built, and tries it: the .deb unpacked, the tarball at another place, `cmake --install`.
 # tests/real/clean_root_test.sh installs the .deb where there is nothing but what it depends on.
-# usage: package_test.sh SERVOCTL BUILD_DIR DEB_BUILD_DIR
+# usage: package_test.sh SERVOCTL BUILD_DIR
 set -euo pipefail
 build=$(readlink -f "$2")
-deb_build=$(readlink -f "$3")
-[ -e "$deb_build/CPackConfig.cmake" ] || { echo "$3 is not built: ./dev package builds it"; exit 77; }
 for tool in dpkg-deb dpkg-shlibdeps cpack; do
   command -v "$tool" >/dev/null || { echo "$tool is missing: ./dev deps installs it"; exit 77; }
 done
@@ -15,9 +13,7 @@ failures=0
 fail() { echo "FAILED $*"; failures=$((failures + 1)); }
 
 cd "$work"
-for tree in "$build" "$deb_build"; do
-  cpack --config "$tree/CPackConfig.cmake" -B "$work/packed" >log 2>&1 || { cat log; exit 1; }
-done
+cpack --config "$build/CPackConfig.cmake" -B "$work/packed" >log 2>&1 || { cat log; exit 1; }
 deb=$(echo packed/*.deb)
 version=$(head -1 "$build/version/version.txt")
 
@@ -45,7 +41,7 @@ dpkg-deb -x "$deb" root
 dpkg-deb -e "$deb" control
 [ "$(dpkg-deb -f "$deb" Version)" = "$version-1" ] || fail "the .deb is $(dpkg-deb -f "$deb" Version), the program $version"
 depends=$(dpkg-deb -f "$deb" Depends)
-for library in libboost-context libc6 libfmt libnl-3 libpugixml libstdc++6 zlib1g; do
+for library in libboost-context libc6 libnl-3 libpugixml libstdc++6 zlib1g; do
   grep -q "$library" <<<"$depends" || fail "the .deb does not depend on $library: $depends"
 done
 has .deb root/usr "${common[@]}" share/zsh/vendor-completions/_servoctl share/doc/servoctl/README.Debian share/doc/servoctl/changelog.Debian.gz

@@ -1,6 +1,9 @@
-# Run by cpack when the files stand in its folder: what Debian has at another place or in another form.
+# Run by cpack when the files stand in its folder: in the tarball the program of one file takes the place of the other; what Debian has
+# at another place or in another form is put there.
 cmake_minimum_required(VERSION 3.25)
 if(NOT CPACK_GENERATOR STREQUAL "DEB")
+  file(GLOB_RECURSE program ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/*bin/servoctl)
+  configure_file(${CPACK_SERVOCTL_BUILD}/static/servoctl ${program} COPYONLY)
   return()
 endif()
 set(share ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/share)
