@@ -25,8 +25,9 @@ Result<void> SimBus::send(const can::Frame& frame) {
 }
 
 void SimBus::deliver(const can::Frame& frame, const Device* sender) {
+  const auto time = now();
   for (auto* device : devices_)
-    if (device != sender) device->on_frame(frame, now());
+    if (device != sender) device->on_frame(frame, time);
   collect();
 }
 
@@ -40,8 +41,9 @@ void SimBus::collect() {
 }
 
 void SimBus::run_devices() {
+  const auto time = now();
   for (auto* device : devices_)
-    if (device->deadline() <= now()) device->on_time(now());
+    if (device->deadline() <= time) device->on_time(time);
   collect();
 }
 
