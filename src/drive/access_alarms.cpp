@@ -1,7 +1,11 @@
 #include "drive/access_alarms.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <string>
 
+#include "base/file.hpp"
+#include "drive/shared_profile.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::drive {
@@ -26,6 +30,16 @@ bool stops_a_drive(ObjectAddress object) {
 
 bool has_access_alarms(const Rules& rules) {
   return !rules.fault.object_alarm.empty() || !rules.fault.sub_index_alarm.empty();
+}
+
+std::shared_ptr<const Rules> alarm_rules(const Family& family) {
+  // A key in quotes may be written with the last two.
+  constexpr std::string_view kSigns[] = {"object_alarm", "sub_index_alarm", "\\u", "\\U"};
+  const auto text = read_file(rules_file(family));
+  const auto stands_there = [&](std::string_view sign) { return text->find(sign) != std::string::npos; };
+  if (!text || !std::any_of(std::begin(kSigns), std::end(kSigns), stands_there)) return nullptr;
+  const auto rules = shared_rules(family);
+  return rules && has_access_alarms(**rules) ? *rules : nullptr;
 }
 
 std::string_view possible_alarm(const Profile& profile, ObjectAddress object) {

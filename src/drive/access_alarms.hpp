@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string_view>
 
 #include "base/object_address.hpp"
@@ -22,5 +23,8 @@ bool stops_a_drive(ObjectAddress object);
 
 /// Whether the family has such alarms.
 bool has_access_alarms(const Rules& rules);
+/// The rules of a family that has such alarms; null where it has none, or its rules cannot be read. Most have
+/// none, and their files are only searched for the words.
+std::shared_ptr<const Rules> alarm_rules(const Family& family);
 
 }  // namespace servoctl::drive

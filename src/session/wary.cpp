@@ -22,8 +22,8 @@ void consider_numbers(Session& session, const Identity& numbers) {
   if (where && !numbers.by_registers) {
     const auto folders = where();
     for (const auto& family : drive::find_families(folders)) {
-      const auto rules = drive::shared_rules(family);
-      if (!rules || !drive::has_access_alarms(**rules) || !agrees_in_numbers(numbers, **rules)) continue;
+      const auto rules = drive::alarm_rules(family);
+      if (rules == nullptr || !agrees_in_numbers(numbers, *rules)) continue;
       if (auto profile = drive::shared_profile(family.name, folders)) found = std::move(*profile);
     }
   }
@@ -50,15 +50,15 @@ void consider_numbers(Session& session, std::span<const std::uint8_t> nodes) {
 
 namespace {
 
-/// Whether the object is one that a drive of some family does not have, and takes for an alarm.
+/// Whether the object is one that a drive of some family may not have, and take for an alarm.
 bool could_raise(Session& session, ObjectAddress object) {
-  if (std::ranges::find(kDecidingNumbers, object) != kDecidingNumbers.end() || drive::stops_a_drive(object) ||
-      session.harmless().contains(object))
+  if (std::ranges::find(kDecidingNumbers, object) != kDecidingNumbers.end() || drive::stops_a_drive(object))
     return false;
+  if (session.options().number_check == NumberCheck::of_all) return true;
+  if (session.harmless().contains(object)) return false;
   const auto folders = session.options().drive_folders();
   for (const auto& family : drive::find_families(folders)) {
-    const auto rules = drive::shared_rules(family);
-    if (!rules || !drive::has_access_alarms(**rules)) continue;
+    if (drive::alarm_rules(family) == nullptr) continue;
     const auto profile = drive::shared_profile(family.name, folders);
     if (profile && !drive::possible_alarm(**profile, object).empty()) return true;
   }

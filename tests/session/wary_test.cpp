@@ -1,12 +1,15 @@
 // What is asked of a drive that may raise an alarm when it is asked for an object that it does not have.
 #include "session/wary.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <span>
 #include <string>
@@ -151,7 +154,7 @@ TEST_F(Wary, IdentificationAsksOneDa200ForItsNumbersOnly) {
 
 TEST_F(Wary, ANamedFamilyIsCheckedBeforeTheFirstRequestThatCouldRaiseAnAlarm) {
   auto session = open("da200");
-  session.options().checks_numbers = true;
+  session.options().number_check = NumberCheck::of_doubtful;
   asked.clear();
   EXPECT_TRUE(session.upload(1, objects::kStatusword).has_value());
   EXPECT_TRUE(session.upload(1, objects::kPositionActual).has_value());
@@ -161,6 +164,35 @@ TEST_F(Wary, ANamedFamilyIsCheckedBeforeTheFirstRequestThatCouldRaiseAnAlarm) {
   EXPECT_EQ(session.upload(1, kNotOfDa200).error().abort_code, canopen::sdo_abort::kNoObject);
   EXPECT_EQ(asked,
             (std::vector<ObjectAddress>{objects::kDeviceType, objects::kVendorId, objects::kProductCode}));
+}
+
+TEST_F(Wary, ADriveOfNoNamedFamilyIsAskedForItsNumbersBeforeAnythingButItsState) {
+  auto session = open("da200");
+  session.options().number_check = NumberCheck::of_all;
+  asked.clear();
+  EXPECT_TRUE(session.upload(1, objects::kStatusword).has_value());
+  EXPECT_EQ(asked, std::vector<ObjectAddress>{objects::kStatusword}) << "no drive takes it for an alarm";
+  EXPECT_TRUE(session.upload(1, objects::kPositionActual).has_value());
+  EXPECT_FALSE(session.upload(1, kNotOfDa200).has_value());
+  EXPECT_EQ(asked, (std::vector<ObjectAddress>{objects::kStatusword, objects::kDeviceType, objects::kVendorId,
+                                               objects::kProductCode, objects::kPositionActual}))
+      << "once, and never for what it lacks";
+}
+
+/// Most families have none: their rules are only searched for the words.
+TEST(AccessAlarms, TheRulesOfAFamilyThatHasThemAreFound) {
+  for (const auto& family : drive::find_families(kFolders)) {
+    const auto rules = drive::load_rules(family);
+    ASSERT_TRUE(rules.has_value()) << family.name;
+    EXPECT_EQ(drive::alarm_rules(family) != nullptr, drive::has_access_alarms(*rules)) << family.name;
+  }
+  const auto stem = std::filesystem::path(testing::TempDir()) / fmt::format("{}-alarming", ::getpid());
+  const auto file = stem.string() + ".toml";
+  std::ofstream(file) << "format = 1\nfamily = \"alarming\"\n[fault]\n\"object\\u005falarm\" = \"Er1\"\n";
+  EXPECT_TRUE(drive::load_rules({"alarming", stem}).has_value())
+      << drive::load_rules({"alarming", stem}).error().message;
+  EXPECT_NE(drive::alarm_rules({"alarming", stem}), nullptr) << "a key may be written so";
+  std::filesystem::remove(file);
 }
 
 TEST_F(Wary, SilenceOfTheNodeEndsWhatWasFound) {
