@@ -47,6 +47,21 @@ tl::unexpected<Error> inconvertible(const Meaning& meaning, const NumberWithUnit
 
 enum class Steps : std::uint8_t { exact, nearest };
 
+/// The range as it is sent, and where a step is not one of the unit, in the unit: `1..65535 = 0.1..6553.5
+/// Hz`.
+std::string whole_range(const Meaning& meaning) {
+  auto out = range_text(meaning);
+  const bool in_steps =
+      meaning.scale != 1 && meaning.encoding == od::Encoding::plain && !meaning.unit.empty();
+  if (!in_steps || !meaning.min || !meaning.max || meaning.least) return out;
+  const auto in_unit = [&](const od::Value& limit) { return plain_number(scaled(meaning, limit), 12); };
+  return out + formatted(" = {}..{} {}", in_unit(*meaning.min), in_unit(*meaning.max), meaning.unit);
+}
+
+tl::unexpected<Error> out_of_range(const Meaning& meaning, std::string_view said, std::string hint = {}) {
+  return fail(Errc::usage, formatted("{} is out of range: {}", said, whole_range(meaning)), std::move(hint));
+}
+
 tl::unexpected<Error> too_large(std::string_view text) {
   return fail(Errc::usage, formatted("'{}' is too large for this object", text));
 }
@@ -65,6 +80,11 @@ Result<Quantity> encoded(const Meaning& meaning, double number) {
 /// A limit of whole steps; where there is none the number itself.
 double bound(const std::optional<od::Value>& limit, double number) {
   return limit ? od::decode_number(od::Encoding::plain, *limit) : number;
+}
+
+/// Beyond a limit, and not only beyond what the type holds.
+bool is_beyond(const Meaning& meaning, double number) {
+  return number < bound(meaning.min, number) || number > bound(meaning.max, number);
 }
 
 Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& given, std::string_view text,
@@ -88,6 +108,7 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
       judge_rounding({given.number, tidy(whole * step), std::abs(step), std::string(given.unit)});
   if (!rounding) return fail(rounding.error());
   const auto value = od::parse_value(meaning.type, formatted("{:.0f}", whole));
+  if (!value && is_beyond(meaning, whole)) return out_of_range(meaning, text);
   if (!value) return fail(value.error());
   return Quantity{*value, *rounding};
 }
@@ -206,9 +227,7 @@ Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
         meaning.least_assumed
             ? formatted("; the minimum {} is assumed: the manual may mean the step size", *meaning.least)
             : std::string());
-  return fail(Errc::usage,
-              formatted("{} is out of range: {}", plain_text(meaning, value), range_text(meaning)),
-              std::move(hint));
+  return out_of_range(meaning, plain_text(meaning, value), std::move(hint));
 }
 
 namespace {
@@ -228,6 +247,9 @@ Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps
   if (!plain && meaning.labels != nullptr && !parse_integer(text))
     return fail(Errc::usage, formatted("'{}' is not a value of this object", text),
                 "values: " + labels_text(*meaning.labels));
+  const auto integer = parse_signed(text);
+  if (!plain && integer && is_beyond(meaning, static_cast<double>(*integer)))
+    return out_of_range(meaning, text);
   if (!plain) return fail(plain.error());
   return Quantity{*plain, {}};
 }

@@ -9,6 +9,7 @@
 #include "drive/standard_objects.hpp"
 #include "session/measure.hpp"
 #include "show/records.hpp"
+#include "show/value_words.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -171,6 +172,11 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
   if (const auto* label = drive::label_of(meaning, *value)) {
     out.label = label->label;
     out.label_zh = report::text_or_null(label->label_zh);
+  } else if (const auto* word = std::get_if<std::uint64_t>(&*value);
+             word != nullptr && reading.target.entry != nullptr) {
+    const auto words = value_words(reading.target.address, *word);
+    out.label = report::text_or_null(words.english);
+    out.label_zh = report::text_or_null(words.chinese);
   }
   return out;
 }

@@ -82,7 +82,9 @@ TEST(Quantity, InAForeignUnitIsRefused) {
 }
 
 TEST(Quantity, OutOfRangeIsRefusedBeforeTheBus) {
-  expect_refused(hertz(), "0", "0 is out of range: 1..20000", "one step is 0.1 Hz");
+  expect_refused(hertz(), "0", "0 is out of range: 1..20000 = 0.1..2000 Hz", "one step is 0.1 Hz");
+  expect_refused(hertz(), "99999Hz", "99999Hz is out of range: 1..20000 = 0.1..2000 Hz", "");
+  expect_refused(hertz(), "99999", "99999 is out of range: 1..20000 = 0.1..2000 Hz", "");
   expect_refused(rpm(), "3001", "3001 is out of range: -3000..3000", "");
   EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "1")), 1U);
   EXPECT_EQ(unsigned_of(parse_quantity(hertz(), "20000")), 20000U);
