@@ -1,6 +1,8 @@
 #include "traffic/frame_decoder.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "base/format.hpp"
@@ -127,6 +129,9 @@ void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
   if (!options_.fields) return;
   fields_.member("code", emergency.code);
   fields_.member("error_register", emergency.error_register);
+  constexpr std::size_t kHead = 3;
+  const auto vendor = std::span(emergency.vendor).first(std::max<std::size_t>(emergency.size, kHead) - kHead);
+  fields_.text_or_null("vendor", to_hex(vendor));
 }
 
 void FrameDecoder::decode_lss(const can::Frame& frame) {
@@ -233,6 +238,7 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   if (options_.fields) add_sdo_fields(step, target);
   add_sdo_value(step, target);
   if (step.announced) out_.text += report::told(options_.chinese, ", {} bytes", *step.announced);
+  if (frame.size != frame.data.size() && !frame.remote) tell_short_sdo(frame, asked.has_value());
   if (options_.fields) end_sdo_fields(step);
   learn(step);
   modes_.on_sdo(*out_.node, step);

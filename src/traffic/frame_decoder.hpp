@@ -63,6 +63,7 @@ class FrameDecoder {
   void decode_lss(const can::Frame& frame);
   void decode_error_control(const can::Frame& frame);
   void decode_sdo(const can::Frame& frame);
+  void tell_short_sdo(const can::Frame& frame, bool from_client);
   void add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target);
   void add_sdo_value(const canopen::SdoStep& step, const drive::Target& target);
   void leave_out(std::initializer_list<std::string_view> keys);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "can/log_clock.hpp"
 #include "can/trace.hpp"
 #include "show/sample_writer.hpp"
 #include "traffic/frame_decoder.hpp"
@@ -40,6 +41,9 @@ class FrameLog {
     table_.emplace(view);
   }
 
+  /// From now on the times are those of this clock, which outlives the log and may change from frame to frame.
+  void show_clock(const can::LogClock& clock) { clock_ = &clock; }
+
   FrameDecoder& decoder() { return decoder_; }
   std::size_t count() const { return count_; }
   /// How many frames of each service came, shown or not.
@@ -58,6 +62,7 @@ class FrameLog {
   std::size_t count_ = 0;
   std::map<std::string_view, std::size_t> services_;
   std::optional<Duration> begin_;
+  const can::LogClock* clock_ = nullptr;
   std::string line_;
   show::LiveView* view_ = nullptr;
   std::optional<FrameTable> table_;
