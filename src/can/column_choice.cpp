@@ -42,9 +42,8 @@ Result<ColumnChoice> ColumnChoice::parse(std::string_view text) {
   const auto refused = [&](std::string what) {
     return fail(
         Errc::usage, std::move(what),
-        "write the columns in their order, `--columns time:ms,-,id:dec,len,data`, or by their names in the header, "
-        "`--columns \"id=CAN ID,data=Payload\"`; each is one of `time date id len data byte type channel ext "
-        "rtr error -`");
+        "write the columns in their order, `time:ms,-,id:dec,len,data`, or with their headings, `id=CAN ID,data=Payload`; "
+        "each is one of `time date id len data byte type channel ext rtr error -`");
   };
   std::size_t named = 0;
   for (const auto part : split(text, ',')) {

@@ -118,7 +118,7 @@ Result<std::unique_ptr<Bus>> open_replay(std::string_view place) {
   if (strays.open_base != 0 || strays.assumed_base != 0)
     return fail(Errc::usage,
                 formatted("{}: nothing in it says whether its identifiers are decimal or hexadecimal", file),
-                formatted("say it with the columns: `replay:{}?columns=time,id:hex,data:hex`", file));
+                "say it behind the file: `?columns=time,id:hex,data:hex`");
   if (lines.empty())
     return fail(Errc::file, formatted("{} contains no frames", file),
                 "recordings are what `decode` reads; `--trace FILE` writes them");

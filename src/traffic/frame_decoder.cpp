@@ -125,7 +125,8 @@ void FrameDecoder::decode_time(const can::Frame& frame) {
 void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
   out_.service = "emcy";
   out_.node = emergency.node;
-  out_.text = sentence(show::event_text({{}, emergency.node, emergency}, options_.profile, options_.chinese));
+  out_.text = sentence(
+      show::event_text({{}, emergency.node, emergency}, family_of(emergency.node), options_.chinese));
   if (!options_.fields) return;
   fields_.member("code", emergency.code);
   fields_.member("error_register", emergency.error_register);
@@ -230,7 +231,7 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   out_.service = "sdo";
   out_.node = node;
   drive::Target target;
-  if (step.object) target = drive::target_at(options_.profile, *step.object);
+  if (step.object) target = drive::target_at(family_of(node), *step.object);
   out_.text = step_text(step, step.object ? name_of(target) : std::string(word("of a transfer begun before")),
                         step.kind == Step::abort ? std::string(word(abort_words_of(step))) : std::string(),
                         options_.chinese);
@@ -245,7 +246,7 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
 }
 
 std::string FrameDecoder::abort_words_of(const SdoStep& step) const {
-  return show::abort_words(options_.profile, options_.chinese, step.abort_code);
+  return show::abort_words(family_of(*out_.node), options_.chinese, step.abort_code);
 }
 
 /// Keys of the service that this frame does not tell.

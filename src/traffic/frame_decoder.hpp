@@ -48,6 +48,10 @@ class FrameDecoder {
   FrameDecoder(const FrameDecoder&) = delete;
   FrameDecoder& operator=(const FrameDecoder&) = delete;
 
+  /// The family of one node, where it is not that of the others; before its first frame. It outlives the
+  /// decoder.
+  void set_family(std::uint8_t node, const drive::Profile* profile);
+
   /// The answer holds until the next call.
   const DecodedFrame& decode(const can::Frame& frame);
 
@@ -70,6 +74,7 @@ class FrameDecoder {
   std::string abort_words_of(const canopen::SdoStep& step) const;
   void end_sdo_fields(const canopen::SdoStep& step);
   void learn(const canopen::SdoStep& step);
+  const drive::Profile* family_of(std::uint8_t node) const;
   std::string words_of(const Bytes& data, ObjectAddress object) const;
   std::string name_of(const drive::Target& target) const;
   std::string_view word(std::string_view english) const;
@@ -82,6 +87,7 @@ class FrameDecoder {
   };
 
   Options options_;
+  std::array<const drive::Profile*, 128> families_{};  ///< Null: that of the options.
   show::PdoBook pdos_;
   canopen::EmergencyIds emergency_ids_;
   DecodedFrame out_;

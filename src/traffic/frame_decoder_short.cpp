@@ -16,7 +16,7 @@ void FrameDecoder::tell_short_sdo(const can::Frame& frame, bool from_client) {
   const auto step = from_client ? observer.on_client_frame(whole) : observer.on_server_frame(whole);
   constexpr std::size_t kHead = 4;
   if (!step.object || step.kind == canopen::SdoStep::Kind::abort || frame.size < kHead) return;
-  const auto target = drive::target_at(options_.profile, *step.object);
+  const auto target = drive::target_at(family_of(*out_.node), *step.object);
   auto says = step_text(step, name_of(target), {}, options_.chinese);
   if (step.data && frame.size >= kHead + step.data->size())
     says += " = " + show::decode_value({*out_.node, target, {}, Bytes{}}, *step.data).text;

@@ -30,6 +30,8 @@ class FrameLog {
 
   /// `time` in a record is that of the log; in text it counts from the first frame.
   void add(Duration time, std::string_view interface_name, const can::Frame& frame);
+  /// A frame that is not to be shown: what it teaches counts.
+  void skip(const can::Frame& frame) { (void)decoder_.decode(frame); }
   /// Something that is no frame: an alarm.
   void remark(Duration time, std::string_view service, std::optional<std::uint8_t> node,
               std::string_view text, std::string_view event);
@@ -41,7 +43,8 @@ class FrameLog {
     table_.emplace(view);
   }
 
-  /// From now on the times are those of this clock, which outlives the log and may change from frame to frame.
+  /// From now on the times are those of this clock, which outlives the log and may change from frame to
+  /// frame.
   void show_clock(const can::LogClock& clock) { clock_ = &clock; }
 
   FrameDecoder& decoder() { return decoder_; }

@@ -24,7 +24,7 @@ struct ReplayDrives {
 /// Asks the nodes of the recording, or of one of its buses, whether they are there, and what their PDOs are.
 /// Errc::bus or interrupted.
 Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording, std::string_view channel = {},
-                                  const can::ReadOptions& read = {});
+                                 const can::ReadOptions& read = {});
 
 /// Kinds of frames in words (`NMT start`, `write of Controlword`), and how many there are of each.
 using FrameKinds = std::map<std::string, std::size_t>;
