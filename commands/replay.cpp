@@ -6,6 +6,7 @@
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "command/command.hpp"
+#include "command/recording_columns.hpp"
 #include "motion/left_energised.hpp"
 #include "show/records.hpp"
 #include "traffic/frame_decoder.hpp"
@@ -33,6 +34,7 @@ constexpr Parameter kReplayParameters[] = {
     {.name = "--channel",
      .help = "which bus of a recording of several, as `decode` names it: can1",
      .kind = Kind::text},
+    kColumnsOption,
 };
 
 /// How frames of a service are counted.
@@ -210,39 +212,52 @@ std::string_view channel_of(const Arguments& arguments) {
 }
 
 /// What is recorded in the file, of one bus.
-Result<std::string> recording_of(const Arguments& arguments) {
+Result<std::string> recording_of(const Arguments& arguments, const can::ReadOptions& read) {
   const auto file = arguments.text("file");
   auto text = traffic::read_recording(file);
   if (!text) return text;
-  if (const auto one = traffic::check_channel(file, *text, channel_of(arguments)); !one)
+  const auto first = can::for_each_frame(
+      *text, [](const can::LogFrame&) { return false; }, read);
+  if (const auto base = traffic::check_base_is_certain(file, first); !base) return fail(base.error());
+  if (const auto one = traffic::check_channel(file, *text, channel_of(arguments), read); !one)
     return fail(one.error());
   return text;
 }
 
-Result<Value> run_replay(Context& context, const Arguments& arguments) {
-  const auto file = arguments.text("file");
-  const auto speed = replay_speed(arguments);
-  if (!speed) return fail(speed.error());
-  const auto text = recording_of(arguments);
-  if (!text) return fail(text.error());
-  const traffic::ReplayChoice choice{.only = arguments.all("--only"),
-                                     .of_master = arguments.has("--master"),
-                                     .channel = channel_of(arguments)};
-  const auto drives = traffic::find_drives(context, *text, choice.channel);
-  if (!drives) return fail(drives.error());
-  const auto plan = traffic::plan_replay(context, choice, *text, *drives);
-  tell_plan(context, plan, file);
+/// Whether there is something to send, and it can be sent as it was recorded.
+Result<void> check_plan(const traffic::ReplayPlan& plan, std::string_view file) {
   if (auto whole = traffic::check_damage(file, plan.strays); !whole) {
     whole.error().hint = "no frame of it was sent; `decode` shows what stands in front of that byte";
     return fail(whole.error());
   }
-  if (plan.seen == 0) return traffic::no_frames(file);
+  if (plan.seen == 0) return traffic::no_frames(file, plan.strays);
   if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())
     return fail(Errc::usage, formatted("{} has no timestamps: its frames cannot be timed", file),
                 "`candump -L` and `candump -ta` write them, `--trace FILE` too");
   if (plan.frames.empty())
     return fail(Errc::negative, formatted("no frame of the {} in {} is sent", plan.seen, file),
                 "--only and --master leave them out");
+  return {};
+}
+
+Result<Value> run_replay(Context& context, const Arguments& arguments) {
+  const auto file = arguments.text("file");
+  const auto speed = replay_speed(arguments);
+  if (!speed) return fail(speed.error());
+  const auto columns = recording_columns(arguments);
+  if (!columns) return fail(columns.error());
+  const can::ReadOptions read{.columns = *columns ? &**columns : nullptr};
+  const auto text = recording_of(arguments, read);
+  if (!text) return fail(text.error());
+  const traffic::ReplayChoice choice{.only = arguments.all("--only"),
+                                     .of_master = arguments.has("--master"),
+                                     .channel = channel_of(arguments),
+                                     .read = read};
+  const auto drives = traffic::find_drives(context, *text, choice.channel, read);
+  if (!drives) return fail(drives.error());
+  const auto plan = traffic::plan_replay(context, choice, *text, *drives);
+  tell_plan(context, plan, file);
+  if (const auto good = check_plan(plan, file); !good) return fail(good.error());
   report::Record answer{{"frames", plan.frames.size()},
                         {"can_move", plan.dangerous(), report::Show::everywhere, "can move a motor"}};
   if (!context.dry_run) {

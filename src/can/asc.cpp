@@ -7,8 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "can/log_fields.hpp"
 
 namespace servoctl::can {
 namespace {
@@ -78,6 +80,30 @@ Frame error_frame() {
   return out;
 }
 
+/// `Sat Nov 21 10:00:00.000 am 2026`
+std::optional<Duration> parse_asc_date(std::string_view text) {
+  constexpr std::string_view kMonths[] = {"jan", "feb", "mar", "apr", "may", "jun",
+                                          "jul", "aug", "sep", "oct", "nov", "dec"};
+  constexpr std::string_view kGerman[] = {"jan", "feb", "mär", "apr", "mai", "jun",
+                                          "jul", "aug", "sep", "okt", "nov", "dez"};
+  (void)take_word(text);
+  const auto name = lower(take_word(text));
+  std::size_t month = 0;
+  for (std::size_t i = 0; i < std::size(kMonths); ++i)
+    if (name == kMonths[i] || name == kGerman[i]) month = i + 1;
+  const auto day = take_word(text);
+  std::string time(take_word(text));
+  auto year = take_word(text);
+  if (equals_nocase(year, "am") || equals_nocase(year, "pm")) {
+    time += ' ' + std::string(year);
+    year = take_word(text);
+  }
+  const auto date = parse_log_date(formatted("{}.{}.{}", day, month, year));
+  const auto clock = parse_log_time(time, TimeUnit::seconds);
+  if (!date || !clock || clock->kind != LogTime::Kind::day) return std::nullopt;
+  return *date + clock->value;
+}
+
 /// Bus systems whose lines begin with their name instead of a channel.
 bool is_foreign(std::string_view word) {
   constexpr std::string_view kOthers[] = {"CANFD", "LIN", "FR", "ETH", "MOST", "J1939TP", "A429"};
@@ -95,6 +121,8 @@ AscLine AscReader::read(std::string_view line) {
       base_ = equals_nocase(take_word(rest), "dec") ? 10 : 16;
       if (equals_nocase(take_word(rest), "timestamps"))
         relative_ = equals_nocase(take_word(rest), "relative");
+    } else if (equals_nocase(first, "date")) {
+      if (const auto date = parse_asc_date(rest)) clock_ = {LogClock::Kind::local, *date};
     }
     return {};
   }

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/time.hpp"
+#include "can/log_clock.hpp"
 #include "can/trace.hpp"
 
 namespace servoctl::can {
@@ -27,13 +28,16 @@ struct AscLine {
 class AscReader {
  public:
   AscLine read(std::string_view line);
+  /// By the date in the header, if it is one in English or German.
+  LogClock clock() const { return clock_; }
 
  private:
   AscLine read_event(Duration time, std::string_view rest) const;
 
   unsigned base_ = 16;
   bool relative_ = false;  ///< Every time counts from the line before.
-  Duration time_{};        ///< Of the last line that had one.
+  LogClock clock_;
+  Duration time_{};  ///< Of the last line that had one.
 };
 
 /// Whether a file that begins like this is an .asc log.

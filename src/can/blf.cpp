@@ -3,6 +3,7 @@
 #include <linux/can/error.h>
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -143,23 +144,49 @@ Duration object_time(std::string_view object) {
   return Duration(static_cast<std::int64_t>(std::min(micros, kLongestMicros)));
 }
 
+/// When the measurement began, by the clock of the computer; none in a header that has no such date.
+LogClock blf_clock(std::string_view header) {
+  constexpr std::size_t kStart = 40;
+  if (header.size() < kStart + 16) return {};
+  ByteCursor in(header.substr(kStart));
+  const int year = in.u16();
+  const unsigned month = in.u16();
+  in.skip(2);
+  const unsigned day = in.u16();
+  const auto hour = in.u16();
+  const auto minute = in.u16();
+  const auto second = in.u16();
+  const auto millisecond = in.u16();
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(month),
+                                         std::chrono::day(day)};
+  if (year < 1970 || year > 2999 || !date.ok() || hour > 23 || minute > 59 || second > 59 ||
+      millisecond > 999)
+    return {};
+  return {LogClock::Kind::local, std::chrono::sys_days(date).time_since_epoch() + std::chrono::hours(hour) +
+                                     std::chrono::minutes(minute) + std::chrono::seconds(second) +
+                                     std::chrono::milliseconds(millisecond)};
+}
+
 class BlfReader {
  public:
-  BlfReader(std::string_view content, const TakeLogFrame& take) : content_(content), take_(&take) {
+  BlfReader(ByteWindow& bytes, const TakeLogFrame& take, const ReadOptions& options)
+      : bytes_(&bytes), take_(&take), clock_(options.clock) {
     out_.records = true;
   }
 
   RecordingStrays read() {
-    ByteCursor header(content_.substr(kFileMark.size()));
+    ByteCursor header(bytes_->ahead(8).substr(kFileMark.size()));
     const std::size_t begin = header.u32();
-    if (!header.ok() || begin < 8 || begin > content_.size()) {
+    if (!header.ok() || begin < 8 || begin > bytes_->ahead(begin).size()) {
       damaged(0, "its header is cut short");
       return std::move(out_);
     }
-    for (at_ = begin; at_ < content_.size() && !ended_;)
+    if (clock_ != nullptr) *clock_ = blf_clock(bytes_->here().substr(0, begin));
+    bytes_->drop(begin);
+    while (!bytes_->at_end() && !ended_)
       if (!read_top()) break;
     if (!ended_ && !out_.damage && !pending_.empty() && pending_.find_first_not_of('\0') != std::string::npos)
-      damaged(content_.size(), "its last object is cut short");
+      damaged(bytes_->offset(), "its last object is cut short");
     return std::move(out_);
   }
 
@@ -169,19 +196,20 @@ class BlfReader {
   }
 
   void cut_short(std::size_t size, std::size_t left) {
-    damaged(at_, formatted("an object of {} bytes begins there, and {} are left", size, left));
+    damaged(bytes_->offset(), formatted("an object of {} bytes begins there, and {} are left", size, left));
   }
 
   /// One object of the file itself: mostly a container. False: no more.
   bool read_top() {
-    const auto rest = content_.substr(at_);
+    auto rest = bytes_->ahead(kBaseHeader);
     if (rest.size() < kBaseHeader && rest.find_first_not_of('\0') == std::string_view::npos) return false;
     const auto head = head_of(rest);
     if (!head) {
-      damaged(at_,
+      damaged(bytes_->offset(),
               rest.size() < kBaseHeader ? "it ends in the middle of an object" : "no object begins there");
       return false;
     }
+    rest = bytes_->ahead(head->size + 3);
     if (head->type == kBlfContainer && head->size > rest.size()) {
       // What was packed in front of the cut can be unpacked.
       (void)read_container(rest);
@@ -197,7 +225,7 @@ class BlfReader {
       read_object(*head, object);
     else if (!read_container(object))
       return false;
-    at_ += head->size + std::min(head->size % 4, rest.size() - head->size);
+    bytes_->drop(head->size + std::min(head->size % 4, rest.size() - head->size));
     return true;
   }
 
@@ -210,7 +238,7 @@ class BlfReader {
     const std::size_t size = in.u32();
     in.skip(4);
     if (!in.ok() || object.size() < kContainerHeader || (method != kPlain && method != kZlib)) {
-      damaged(at_, formatted("a container of an unknown kind ({}) begins there", method));
+      damaged(bytes_->offset(), formatted("a container of an unknown kind ({}) begins there", method));
       return false;
     }
     if (method == kPlain) {
@@ -219,7 +247,8 @@ class BlfReader {
       const auto unpacked = unpack(in.rest(), std::min(size, kMostUnpacked));
       pending_ += unpacked.bytes;
       if (!unpacked.whole) {
-        if (read_pending()) damaged(at_, "the container there is damaged, or holds more than it says");
+        if (read_pending())
+          damaged(bytes_->offset(), "the container there is damaged, or holds more than it says");
         return false;
       }
     }
@@ -233,7 +262,7 @@ class BlfReader {
       const auto mark = rest.substr(0, kMostPadding + kObjectMark.size()).find(kObjectMark);
       if (mark == std::string_view::npos) {
         if (rest.size() >= kMostPadding + kObjectMark.size()) {
-          damaged(at_, "the container there holds something that is no object");
+          damaged(bytes_->offset(), "the container there holds something that is no object");
           return false;
         }
         break;
@@ -241,7 +270,7 @@ class BlfReader {
       const auto head = head_of(rest.substr(mark));
       if (!head) break;
       if (head->size < kBaseHeader || head->size > kMostObject) {
-        damaged(at_, formatted("the container there holds an object of {} bytes", head->size));
+        damaged(bytes_->offset(), formatted("the container there holds an object of {} bytes", head->size));
         return false;
       }
       if (rest.size() - mark < head->size) break;
@@ -268,9 +297,9 @@ class BlfReader {
     if (kind == Object::frame) ended_ = !(*take_)({object_time(object), formatted("can{}", channel), frame});
   }
 
-  std::string_view content_;
+  ByteWindow* bytes_;
   const TakeLogFrame* take_;
-  std::size_t at_ = 0;
+  LogClock* clock_;
   std::string pending_;  ///< Out of containers, not read yet.
   std::size_t number_ = 0;
   bool ended_ = false;
@@ -281,8 +310,8 @@ class BlfReader {
 
 bool is_blf(std::string_view beginning) { return beginning.starts_with(kFileMark); }
 
-RecordingStrays read_blf(std::string_view content, const TakeLogFrame& take) {
-  return BlfReader(content, take).read();
+RecordingStrays read_blf(ByteWindow& bytes, const TakeLogFrame& take, const ReadOptions& options) {
+  return BlfReader(bytes, take, options).read();
 }
 
 }  // namespace servoctl::can

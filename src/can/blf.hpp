@@ -16,6 +16,6 @@ bool is_blf(std::string_view beginning);
 /// what others found out (python-can, Vector BLF of T. Lorenz).
 ///
 /// A container that unpacks to more than it says, or than 64 MiB, is damage.
-RecordingStrays read_blf(std::string_view content, const TakeLogFrame& take);
+RecordingStrays read_blf(ByteWindow& bytes, const TakeLogFrame& take, const ReadOptions& options);
 
 }  // namespace servoctl::can

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <string>
+#include <utility>
 
 #include "base/number.hpp"
 #include "base/text.hpp"
@@ -106,8 +108,29 @@ bool take_data(WordCursor& words, Frame& out) {
     if (!byte) return false;
     out.data[i] = static_cast<std::uint8_t>(*byte);
   }
-  const auto rest = words.rest();
-  return rest.empty() || rest.starts_with('\'') || rest.starts_with("ERRORFRAME");
+  // More bytes than were announced are no remark.
+  const auto next = words.next();
+  return next.size() != 2 || !parse_digits(next, 16);
+}
+
+/// The frame of `cansend can0 601#40.41.60.00`, wherever in a line of a shell it stands.
+std::optional<LogFrame> parse_cansend(std::string_view line) {
+  constexpr std::string_view kCommand = "cansend";
+  const auto at = line.find(kCommand);
+  if (at == std::string_view::npos) return std::nullopt;
+  WordCursor words(line.substr(at + kCommand.size()));
+  LogFrame out;
+  out.interface_name = words.next();
+  std::string text;
+  for (const char c : words.next())
+    if (c == ';')
+      break;
+    else if (c != '.')
+      text += c;
+  const auto frame = parse_frame(text);
+  if (!frame || out.interface_name.empty()) return std::nullopt;
+  out.frame = *frame;
+  return out;
 }
 
 }  // namespace
@@ -131,6 +154,20 @@ std::optional<LogFrame> parse_candump_line(std::string_view line) {
   out.frame.size = static_cast<std::uint8_t>(length[1] - '0');
   if (!take_data(words, out.frame)) return std::nullopt;
   return out;
+}
+
+AscLine read_candump(std::string_view line) {
+  using Kind = AscLine::Kind;
+  if (auto logged = parse_log_line(line)) return {Kind::frame, std::move(*logged)};
+  if (auto shown = parse_candump_line(line)) return {Kind::frame, std::move(*shown)};
+  const auto text = trim(line);
+  if (text.empty() || text.starts_with('#') || text.starts_with("//")) return {};
+  if (line.starts_with('\t') && text.find('{') != std::string_view::npos) return {};
+  if (auto sent = parse_cansend(text)) return {Kind::frame, std::move(*sent)};
+  // A remark behind a line of -L.
+  if (const auto remark = text.find(" #"); remark != std::string_view::npos)
+    if (auto logged = parse_log_line(text.substr(0, remark))) return {Kind::frame, std::move(*logged)};
+  return {is_candump_fd(line) ? Kind::unsuited : Kind::malformed, {}};
 }
 
 bool is_candump_fd(std::string_view line) {

@@ -19,6 +19,7 @@ constexpr std::uint32_t kByteOrder = 0x1A2B3C4D;
 constexpr std::size_t kFileHeader = 24;
 constexpr std::size_t kPacketHeader = 16;
 
+constexpr std::uint32_t kEthernet = 1;
 constexpr std::uint32_t kCan = 227;
 constexpr std::uint32_t kCooked = 113;
 constexpr std::uint32_t kCooked2 = 276;
@@ -57,7 +58,22 @@ Duration time_of_packet(std::uint64_t stamp, std::uint8_t resolution) {
                      scale > 1'000'000 ? fraction / (scale / 1'000'000) : fraction * (1'000'000 / scale));
 }
 
-enum class Packet : std::uint8_t { frame, unsuited, malformed };
+enum class Packet : std::uint8_t { frame, unsuited, malformed, ethercat };
+
+/// Whether an Ethernet frame carries EtherCAT, behind tags of VLANs or not.
+bool is_ethercat(std::string_view bytes) {
+  constexpr std::size_t kAddresses = 12;
+  constexpr std::uint16_t kVlan = 0x8100;
+  constexpr std::uint16_t kEtherCat = 0x88A4;
+  if (bytes.size() < kAddresses) return false;
+  ByteCursor in(bytes.substr(kAddresses), true);
+  auto type = in.u16();
+  while (type == kVlan && in.ok()) {
+    in.skip(2);
+    type = in.u16();
+  }
+  return in.ok() && type == kEtherCat;
+}
 
 /// The CAN frame of a packet: identifier with flags, length, flags of CAN FD, two unused bytes, data. `big`:
 /// the order of the identifier's bytes.
@@ -83,6 +99,7 @@ Packet parse_can(std::string_view bytes, bool big, Frame& out) {
 /// capture (libpcap swaps it with them).
 Packet parse_packet(std::uint32_t link, bool big, std::string_view bytes, Frame& out) {
   if (link == kCan) return parse_can(bytes, true, out);
+  if (link == kEthernet && is_ethercat(bytes)) return Packet::ethercat;
   if (link != kCooked && link != kCooked2) return Packet::unsuited;
   const std::size_t header = link == kCooked ? 16 : 20;
   if (bytes.size() < header) return Packet::malformed;
@@ -94,12 +111,14 @@ Packet parse_packet(std::uint32_t link, bool big, std::string_view bytes, Frame&
 /// Both forms: counts, and hands on.
 class PcapReader {
  public:
-  PcapReader(std::string_view content, const TakeLogFrame& take) : content_(content), take_(&take) {
+  PcapReader(ByteWindow& bytes, const TakeLogFrame& take, const ReadOptions& options)
+      : bytes_(&bytes), take_(&take) {
     out_.records = true;
+    if (options.clock != nullptr) *options.clock = {LogClock::Kind::utc, {}};
   }
 
   RecordingStrays read() {
-    if (ByteCursor(content_).u32() == kSection)
+    if (ByteCursor(bytes_->ahead(4)).u32() == kSection)
       read_blocks();
     else
       read_packets();
@@ -117,50 +136,58 @@ class PcapReader {
     Frame frame;
     const auto packet = parse_packet(source.link, big_, bytes, frame);
     if (packet == Packet::malformed) out_.add_unknown(number_);
-    out_.unsuited += packet == Packet::unsuited;
+    out_.unsuited += packet == Packet::unsuited || packet == Packet::ethercat;
+    out_.ethercat += packet == Packet::ethercat;
     return packet != Packet::frame || (*take_)({time, source.name, frame});
   }
 
   void read_packets() {
-    const auto magic = ByteCursor(content_, true).u32();
+    const auto begin = bytes_->ahead(kFileHeader);
+    const auto magic = ByteCursor(begin, true).u32();
     big_ = magic == kMicros || magic == kNanos;
-    const bool nanos = magic == kNanos || ByteCursor(content_).u32() == kNanos;
-    if (content_.size() < kFileHeader) return damaged(content_.size(), "its header is cut short");
-    ByteCursor header(content_.substr(20), big_);
+    const bool nanos = magic == kNanos || ByteCursor(begin).u32() == kNanos;
+    if (begin.size() < kFileHeader) return damaged(begin.size(), "its header is cut short");
+    ByteCursor header(begin.substr(20), big_);
     const Source source{header.u32() & 0xFFFFU, "can0", 6};
-    for (auto at = kFileHeader; at < content_.size();) {
-      if (content_.size() - at < kPacketHeader) return damaged(at, "it ends in the middle of a packet");
-      ByteCursor in(content_.substr(at), big_);
+    bytes_->drop(kFileHeader);
+    while (!bytes_->at_end()) {
+      const auto head = bytes_->ahead(kPacketHeader);
+      if (head.size() < kPacketHeader) return damaged(bytes_->offset(), "it ends in the middle of a packet");
+      ByteCursor in(head, big_);
       const auto seconds = in.u32();
       const auto fraction = in.u32();
       const std::size_t size = in.u32();
-      const std::size_t left = content_.size() - at - kPacketHeader;
-      if (size > left)
-        return damaged(at, formatted("a packet of {} bytes begins there, and {} are left", size, left));
-      const auto bytes = content_.substr(at + kPacketHeader, size);
-      if (!take(source, bytes, since_epoch(seconds, nanos ? fraction / 1000 : fraction))) return;
-      at += kPacketHeader + size;
+      const auto packet = bytes_->ahead(kPacketHeader + size).substr(kPacketHeader);
+      if (size > packet.size())
+        return damaged(bytes_->offset(),
+                       formatted("a packet of {} bytes begins there, and {} are left", size, packet.size()));
+      if (!take(source, packet.substr(0, size), since_epoch(seconds, nanos ? fraction / 1000 : fraction)))
+        return;
+      bytes_->drop(kPacketHeader + size);
     }
   }
 
   void read_blocks() {
-    for (std::size_t at = 0; at < content_.size();) {
-      const auto left = content_.size() - at;
-      if (left < 12) return damaged(at, "it ends in the middle of a block");
-      if (ByteCursor(content_.substr(at)).u32() == kSection) {
+    while (!bytes_->at_end()) {
+      const auto at = bytes_->offset();
+      const auto head = bytes_->ahead(12);
+      if (head.size() < 12) return damaged(at, "it ends in the middle of a block");
+      if (ByteCursor(head).u32() == kSection) {
         sources_.clear();
-        big_ = ByteCursor(content_.substr(at + 8), true).u32() == kByteOrder;
-        if (!big_ && ByteCursor(content_.substr(at + 8)).u32() != kByteOrder)
+        big_ = ByteCursor(head.substr(8), true).u32() == kByteOrder;
+        if (!big_ && ByteCursor(head.substr(8)).u32() != kByteOrder)
           return damaged(at, "a section begins there without a byte order");
       }
-      ByteCursor in(content_.substr(at), big_);
+      ByteCursor in(head, big_);
       const auto type = in.u32();
       const std::size_t size = in.u32();
       if (size < 12 || size % 4 != 0) return damaged(at, formatted("a block of {} bytes begins there", size));
-      if (size > left)
-        return damaged(at, formatted("a block of {} bytes begins there, and {} are left", size, left));
-      if (!read_block(type, content_.substr(at + 8, size - 12))) return;
-      at += size;
+      const auto block = bytes_->ahead(size);
+      if (size > block.size())
+        return damaged(at,
+                       formatted("a block of {} bytes begins there, and {} are left", size, block.size()));
+      if (!read_block(type, block.substr(8, size - 12))) return;
+      bytes_->drop(size);
     }
   }
 
@@ -212,7 +239,7 @@ class PcapReader {
     sources_.push_back(std::move(source));
   }
 
-  std::string_view content_;
+  ByteWindow* bytes_;
   const TakeLogFrame* take_;
   bool big_ = false;
   std::vector<Source> sources_;
@@ -229,8 +256,8 @@ bool is_pcap(std::string_view beginning) {
   return little == kMicros || little == kNanos || big == kMicros || big == kNanos || little == kSection;
 }
 
-RecordingStrays read_pcap(std::string_view content, const TakeLogFrame& take) {
-  return PcapReader(content, take).read();
+RecordingStrays read_pcap(ByteWindow& bytes, const TakeLogFrame& take, const ReadOptions& options) {
+  return PcapReader(bytes, take, options).read();
 }
 
 }  // namespace servoctl::can

@@ -1,10 +1,12 @@
 #include "can/replay.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "base/file.hpp"
 #include "base/format.hpp"
+#include "base/text.hpp"
 #include "can/recording.hpp"
 
 namespace servoctl::can {
@@ -18,17 +20,38 @@ bool is_of_master(const Frame& frame) {
   return frame.id == 0x000 || frame.remote || (frame.id > 0x600 && frame.id <= 0x67F) || frame.id == 0x7E5;
 }
 
-/// `recording.log?channel=can1`: the file, and the bus of it; empty where none is named.
-std::pair<std::filesystem::path, std::string> file_and_channel(std::string_view place) {
-  constexpr std::string_view kChannel = "?channel=";
-  const auto at = place.rfind(kChannel);
-  if (at == std::string_view::npos) return {std::filesystem::path(place), {}};
-  return {std::filesystem::path(place.substr(0, at)), std::string(place.substr(at + kChannel.size()))};
+/// `recording.log?channel=can1&columns=time,id,data`
+struct ReplayPlace {
+  std::string file;
+  std::string channel;  ///< Empty where none is named.
+  std::optional<ColumnChoice> columns;
+};
+
+Result<ReplayPlace> parse_place(std::string_view place) {
+  constexpr std::string_view kChannel = "channel=";
+  constexpr std::string_view kColumns = "columns=";
+  ReplayPlace out;
+  for (auto mark = place.rfind('?'); mark != std::string_view::npos; mark = std::string_view::npos) {
+    const auto words = place.substr(mark + 1);
+    // A file may have the mark in its name.
+    if (!words.starts_with(kChannel) && !words.starts_with(kColumns)) break;
+    for (const auto word : split(words, '&')) {
+      if (word.starts_with(kChannel)) out.channel = word.substr(kChannel.size());
+      if (!word.starts_with(kColumns)) continue;
+      auto columns = ColumnChoice::parse(word.substr(kColumns.size()));
+      if (!columns) return fail(columns.error());
+      out.columns = std::move(*columns);
+    }
+    place = place.substr(0, mark);
+  }
+  out.file = place;
+  return out;
 }
 
 /// Answers of several buses together would be of none of them.
-Result<void> check_channel(const std::string& file, std::string_view text, const std::string& channel) {
-  const auto buses = frames_of_buses(text);
+Result<void> check_channel(const ReplayPlace& place, std::string_view text, const ReadOptions& read) {
+  const auto buses = frames_of_buses(text, read);
+  const auto& [file, channel, columns] = place;
   if (channel.empty() ? buses.size() < 2 : buses.count(channel) > 0) return {};
   if (!channel.empty())
     return fail(Errc::usage, formatted("{} has no frame of {}", file, channel),
@@ -75,25 +98,32 @@ void ReplayBus::skip_done() {
 }
 
 Result<std::unique_ptr<Bus>> open_replay(std::string_view place) {
-  const auto [file, channel] = file_and_channel(place);
+  const auto from = parse_place(place);
+  if (!from) return fail(from.error());
+  const auto& file = from->file;
   const auto text = read_file(file, kMaxFile);
   if (!text) return fail(text.error());
-  if (const auto one = check_channel(file.string(), *text, channel); !one) return fail(one.error());
+  const ReadOptions read{.columns = from->columns ? &*from->columns : nullptr};
+  if (const auto one = check_channel(*from, *text, read); !one) return fail(one.error());
   std::vector<LogFrame> lines;
-  const auto strays = for_each_frame(*text, [&, &only = channel](const LogFrame& line) {
-    if (only.empty() || line.interface_name == only) lines.push_back(line);
+  const auto take = [&](const LogFrame& line) {
+    if (from->channel.empty() || line.interface_name == from->channel) lines.push_back(line);
     return true;
-  });
+  };
+  const auto strays = for_each_frame(*text, take, read);
   if (strays.damage)
-    return fail(
-        Errc::file,
-        formatted("{} is damaged at byte {}: {}", file.string(), strays.damage->offset, strays.damage->what),
-        "`decode` shows what stands in front of that byte");
+    return fail(Errc::file,
+                formatted("{} is damaged at byte {}: {}", file, strays.damage->offset, strays.damage->what),
+                "`decode` shows what stands in front of that byte");
+  if (strays.open_base != 0 || strays.assumed_base != 0)
+    return fail(Errc::usage,
+                formatted("{}: nothing in it says whether its identifiers are decimal or hexadecimal", file),
+                "say it behind the file: `?columns=time,id:hex,data:hex`");
   if (lines.empty())
-    return fail(Errc::file, formatted("{} contains no frames", file.string()),
+    return fail(Errc::file, formatted("{} contains no frames", file),
                 "recordings are what `decode` reads; `--trace FILE` writes them");
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
-  return std::make_unique<ReplayBus>(std::move(lines), file.string());
+  return std::make_unique<ReplayBus>(std::move(lines), file);
 }
 
 }  // namespace servoctl::can

@@ -23,6 +23,7 @@ constexpr std::array<TrcVersion, 4> kVersions{
     {{"1.0", "NOILD"}, {"1.1", "NOTILD"}, {"1.2", "NOBTILD"}, {"1.3", "NOBTIRLD"}}};
 
 constexpr std::string_view kVersionKey = ";$FILEVERSION=";
+constexpr std::string_view kStartKey = ";$STARTTIME=";
 constexpr std::string_view kColumnsKey = ";$COLUMNS=";
 constexpr std::size_t kMostColumns = 16;
 constexpr std::size_t kMostWords = kMostColumns + 8;
@@ -101,6 +102,14 @@ void TrcReader::read_header(std::string_view line) {
       if (const auto letter = trim(word); letter.size() == 1 && order.size() < kMostColumns)
         order.push_back(letter.front());
     if (!order.empty()) order_ = std::move(order);
+  } else if (starts_with_nocase(line, kStartKey)) {
+    // Days since 1899-12-30, in the time of the computer.
+    const auto days = parse_real(trim(line.substr(kStartKey.size())));
+    constexpr double kDaysTo1970 = 25569;
+    constexpr double kMostDays = 100'000;
+    if (days && *days >= kDaysTo1970 && *days < kMostDays)
+      clock_ = {LogClock::Kind::local,
+                Duration(static_cast<std::int64_t>((*days - kDaysTo1970) * 86'400'000) * 1000)};
   }
 }
 

@@ -23,11 +23,14 @@ class TrcReader {
  public:
   TrcReader();
   AscLine read(std::string_view line);
+  /// By `;$STARTTIME`.
+  LogClock clock() const { return clock_; }
 
  private:
   void read_header(std::string_view line);
   AscLine read_event(const std::vector<std::string_view>& words) const;
 
+  LogClock clock_;
   std::vector<char> order_;  ///< Of the columns, by the letters of `;$COLUMNS`.
 };
 

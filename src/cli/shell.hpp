@@ -219,6 +219,7 @@ class Shell {
   Result<void> make_ready(Run& run, const command::Arguments& arguments);
   Result<void> prepare(Run& run, const command::Arguments& arguments);
   Result<void> prepare_profile(Run& run, bool changes);
+  Result<void> prepare_families(Run& run);
   Result<void> ask_drive(Run& run);
   Result<const drive::Profile*> device_of_node(Run& run, const Error& why);
   Result<void> prepare_nodes(Run& run);

@@ -1,8 +1,10 @@
 // Where the dictionary of a line comes from: a family, a file, or the drive itself.
+#include <algorithm>
 #include <utility>
 
 #include "base/format.hpp"
 #include "base/text.hpp"
+#include "canopen/node_list.hpp"
 #include "cli/shell.hpp"
 #include "drive/shared_profile.hpp"
 #include "od/data_sheet.hpp"
@@ -30,9 +32,33 @@ bool asks_a_drive(const Settings& settings, const command::Command& command) {
          session::is_ethercat(settings.bus) && one_node(settings) != 0;
 }
 
+/// Whether `-d` names nodes and their families, `3=gsd600,4=da200`, and no family or file.
+bool names_nodes(std::string_view drive) {
+  const auto sign = drive.find('=');
+  return sign != std::string_view::npos && canopen::parse_node_ids(drive.substr(0, sign), "").has_value();
+}
+
 }  // namespace
 
+/// The families of single nodes.
+Result<void> Shell::prepare_families(Run& run) {
+  for (const auto part : split(std::string_view(run.settings.drive), ',')) {
+    const auto sign = std::min(part.find('='), part.size());
+    const auto nodes = canopen::parse_node_ids(trim(part.substr(0, sign)), "write -d 3=gsd600,4-6=da200");
+    if (!nodes) return fail(nodes.error());
+    const auto loaded = profile(std::string(trim(part.substr(std::min(sign + 1, part.size())))));
+    if (!loaded) return fail(loaded.error());
+    for (const auto node : *nodes) run.context.families[node] = *loaded;
+  }
+  return {};
+}
+
 Result<void> Shell::prepare_profile(Run& run, bool changes) {
+  if (names_nodes(run.settings.drive)) {
+    if (run.command->family_by_node) return prepare_families(run);
+    return fail(Errc::usage, formatted("{} takes one family for all nodes", run.command->path),
+                "the cabinet file names the family of each axis; `decode` takes -d 3=gsd600,4=da200");
+  }
   if (equals_nocase(run.settings.drive, kOnline) || asks_a_drive(run.settings, *run.command)) {
     const auto asked = ask_drive(run);
     if (asked && console_->is_verbose()) tell_family(run);

@@ -93,6 +93,7 @@ struct Command {
   Effect effect = Effect::none;
   FamilyCheck family = FamilyCheck::by_effect;
   std::string_view families_in = {};  ///< The file of this parameter may name the families: then -d need not.
+  bool family_by_node = false;         ///< `-d 3=gsd600,4=da200` names a family for each node.
   std::string_view reads_without = {};  ///< Without this parameter it only reads, whatever `effect` says.
   Result<report::Value> (*run)(Context&, const Arguments&) = nullptr;
   /// Checks names and values by the dictionary alone (no session in the context), for lines that are to be

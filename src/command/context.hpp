@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace servoctl::command {
 /// The desk of one command line: with what its words and the front end add.
 struct Context : show::Desk {
   drive::Folders drive_folders;
+  std::map<std::uint8_t, const drive::Profile*> families;  ///< Of single nodes (Command::family_by_node).
   std::vector<const cabinet::Axis*> axes;  ///< That the nodes are; empty where they are just nodes.
   bool nodes_typed = false;                ///< In the line itself; else by `use` or the environment.
   bool read_only = false;                  ///< Nothing in a drive may be changed.

@@ -52,7 +52,8 @@ struct Words {
     return formatted("state error 0x{:04X}: {}", error.code, error.text);
   }
   std::string operator()(const canopen::Emergency& e) const {
-    if (e.is_reset()) return "EMCY 0x0000: error reset or no error";
+    const bool bare = e.code == 0 && e.error_register == 0 && e.vendor == decltype(e.vendor){};
+    if (bare) return "EMCY 0x0000: error reset or no error";
     if (e.size == 2) return formatted("EMCY 0x{:04X} {}", e.code, fault_words(profile, chinese, e.code));
     return formatted("EMCY 0x{:04X} {}; error register 0x{:02X} ({}); vendor bytes {}", e.code,
                      fault_words(profile, chinese, e.code, e.vendor), e.error_register,

@@ -181,7 +181,7 @@ PdoBook::Node& PdoBook::node(std::uint8_t id) {
   const auto known = nodes_.find(id);
   if (known != nodes_.end()) return known->second;
   auto& out = nodes_[id];
-  if (profile_ != nullptr) out.at_start = session::default_pdo_values(*profile_, id);
+  if (const auto* family = family_of(id)) out.at_start = session::default_pdo_values(*family, id);
   out.now = out.at_start;
   rebuild(id);
   return out;
@@ -217,7 +217,7 @@ void PdoBook::rebuild(std::uint8_t id) {
   for (auto& pdo : session::pdos_of(place.now)) {
     if (place.now.count({pdo.communication_index(), 1}) == 0) pdo.cob_id = predefined_cob_id(pdo, id);
     const bool assumed = place.told.count({pdo.mapping_index(), 0}) == 0;
-    place.views.push_back(make_view(profile_, chinese_, id, std::move(pdo)));
+    place.views.push_back(make_view(family_of(id), chinese_, id, std::move(pdo)));
     place.views.back().assumed = assumed;
   }
   index();

@@ -72,6 +72,8 @@ class PdoBook {
   /// `profile` may be null; it outlives the book.
   PdoBook(const drive::Profile* profile, bool chinese) : profile_(profile), chinese_(chinese) {}
 
+  /// The family of one node, where it is not that of the others; before anything else is said of the node.
+  void set_family(std::uint8_t node, const drive::Profile* profile) { families_[node] = profile; }
   /// What a node says its PDO parameters are.
   void set(std::uint8_t node, session::Values values);
   /// A PDO parameter that was seen to be written or read on the bus; other objects change nothing.
@@ -93,7 +95,13 @@ class PdoBook {
   void rebuild(std::uint8_t id);
   void index();
 
+  const drive::Profile* family_of(std::uint8_t node) const {
+    const auto own = families_.find(node);
+    return own == families_.end() ? profile_ : own->second;
+  }
+
   const drive::Profile* profile_;
+  std::map<std::uint8_t, const drive::Profile*> families_;
   bool chinese_;
   std::map<std::uint8_t, Node> nodes_;
   std::array<const PdoView*, 0x800> by_id_{};

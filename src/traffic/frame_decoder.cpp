@@ -1,6 +1,8 @@
 #include "traffic/frame_decoder.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "base/format.hpp"
@@ -123,10 +125,14 @@ void FrameDecoder::decode_time(const can::Frame& frame) {
 void FrameDecoder::decode_emergency(const canopen::Emergency& emergency) {
   out_.service = "emcy";
   out_.node = emergency.node;
-  out_.text = sentence(show::event_text({{}, emergency.node, emergency}, options_.profile, options_.chinese));
+  out_.text = sentence(
+      show::event_text({{}, emergency.node, emergency}, family_of(emergency.node), options_.chinese));
   if (!options_.fields) return;
   fields_.member("code", emergency.code);
   fields_.member("error_register", emergency.error_register);
+  constexpr std::size_t kHead = 3;
+  const auto vendor = std::span(emergency.vendor).first(std::max<std::size_t>(emergency.size, kHead) - kHead);
+  fields_.text_or_null("vendor", to_hex(vendor));
 }
 
 void FrameDecoder::decode_lss(const can::Frame& frame) {
@@ -225,7 +231,7 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   out_.service = "sdo";
   out_.node = node;
   drive::Target target;
-  if (step.object) target = drive::target_at(options_.profile, *step.object);
+  if (step.object) target = drive::target_at(family_of(node), *step.object);
   out_.text = step_text(step, step.object ? name_of(target) : std::string(word("of a transfer begun before")),
                         step.kind == Step::abort ? std::string(word(abort_words_of(step))) : std::string(),
                         options_.chinese);
@@ -233,13 +239,14 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   if (options_.fields) add_sdo_fields(step, target);
   add_sdo_value(step, target);
   if (step.announced) out_.text += report::told(options_.chinese, ", {} bytes", *step.announced);
+  if (frame.size != frame.data.size() && !frame.remote) tell_short_sdo(frame, asked.has_value());
   if (options_.fields) end_sdo_fields(step);
   learn(step);
   modes_.on_sdo(*out_.node, step);
 }
 
 std::string FrameDecoder::abort_words_of(const SdoStep& step) const {
-  return show::abort_words(options_.profile, options_.chinese, step.abort_code);
+  return show::abort_words(family_of(*out_.node), options_.chinese, step.abort_code);
 }
 
 /// Keys of the service that this frame does not tell.

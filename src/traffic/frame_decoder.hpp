@@ -48,6 +48,10 @@ class FrameDecoder {
   FrameDecoder(const FrameDecoder&) = delete;
   FrameDecoder& operator=(const FrameDecoder&) = delete;
 
+  /// The family of one node, where it is not that of the others; before its first frame. It outlives the
+  /// decoder.
+  void set_family(std::uint8_t node, const drive::Profile* profile);
+
   /// The answer holds until the next call.
   const DecodedFrame& decode(const can::Frame& frame);
 
@@ -63,12 +67,14 @@ class FrameDecoder {
   void decode_lss(const can::Frame& frame);
   void decode_error_control(const can::Frame& frame);
   void decode_sdo(const can::Frame& frame);
+  void tell_short_sdo(const can::Frame& frame, bool from_client);
   void add_sdo_fields(const canopen::SdoStep& step, const drive::Target& target);
   void add_sdo_value(const canopen::SdoStep& step, const drive::Target& target);
   void leave_out(std::initializer_list<std::string_view> keys);
   std::string abort_words_of(const canopen::SdoStep& step) const;
   void end_sdo_fields(const canopen::SdoStep& step);
   void learn(const canopen::SdoStep& step);
+  const drive::Profile* family_of(std::uint8_t node) const;
   std::string words_of(const Bytes& data, ObjectAddress object) const;
   std::string name_of(const drive::Target& target) const;
   std::string_view word(std::string_view english) const;
@@ -81,6 +87,7 @@ class FrameDecoder {
   };
 
   Options options_;
+  std::array<const drive::Profile*, 128> families_{};  ///< Null: that of the options.
   show::PdoBook pdos_;
   canopen::EmergencyIds emergency_ids_;
   DecodedFrame out_;

@@ -4,6 +4,17 @@
 
 namespace servoctl::traffic {
 
+void FrameDecoder::set_family(std::uint8_t node, const drive::Profile* profile) {
+  families_[node % families_.size()] = profile;
+  pdos_.set_family(node, profile);
+  modes_.set_family(node, profile);
+}
+
+const drive::Profile* FrameDecoder::family_of(std::uint8_t node) const {
+  const auto* own = families_[node % families_.size()];
+  return own != nullptr ? own : options_.profile;
+}
+
 /// A value that was read holds; one that was written holds when the node has taken it.
 void FrameDecoder::learn(const canopen::SdoStep& step) {
   auto& pending = pending_[*out_.node];

@@ -54,6 +54,10 @@ FrameLog::FrameLog(show::Desk& desk, FrameFilter filter, bool raw)
 void FrameLog::begin_line(Duration time) {
   const auto since = (time - begin_.value_or(time)).count();
   line_.clear();
+  if (clock_ != nullptr) {
+    (line_ += can::clock_text(*clock_, time, ' ')) += ' ';
+    return;
+  }
   // Logs that were put together may go back behind their first line.
   const auto size = since < 0 ? -since : since;
   if (since < 0)
@@ -83,6 +87,7 @@ void FrameLog::add(Duration time, std::string_view interface_name, const can::Fr
   if (writer_.wants_records()) {
     return writer_.add_record([&](report::JsonWriter& json) {
       json.member("time", seconds(time));
+      if (clock_ != nullptr) json.member("clock", can::clock_text(*clock_, time, 'T'));
       json.member("interface", interface_name);
       line_.clear();
       can::append(frame, line_);

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "can/log_clock.hpp"
 #include "can/trace.hpp"
 #include "show/sample_writer.hpp"
 #include "traffic/frame_decoder.hpp"
@@ -29,6 +30,8 @@ class FrameLog {
 
   /// `time` in a record is that of the log; in text it counts from the first frame.
   void add(Duration time, std::string_view interface_name, const can::Frame& frame);
+  /// A frame that is not to be shown: what it teaches counts.
+  void skip(const can::Frame& frame) { (void)decoder_.decode(frame); }
   /// Something that is no frame: an alarm.
   void remark(Duration time, std::string_view service, std::optional<std::uint8_t> node,
               std::string_view text, std::string_view event);
@@ -39,6 +42,10 @@ class FrameLog {
     view_ = &view;
     table_.emplace(view);
   }
+
+  /// From now on the times are those of this clock, which outlives the log and may change from frame to
+  /// frame.
+  void show_clock(const can::LogClock& clock) { clock_ = &clock; }
 
   FrameDecoder& decoder() { return decoder_; }
   std::size_t count() const { return count_; }
@@ -58,6 +65,7 @@ class FrameLog {
   std::size_t count_ = 0;
   std::map<std::string_view, std::size_t> services_;
   std::optional<Duration> begin_;
+  const can::LogClock* clock_ = nullptr;
   std::string line_;
   show::LiveView* view_ = nullptr;
   std::optional<FrameTable> table_;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 
 #include "base/bytes.hpp"
@@ -17,6 +18,9 @@ class ModesSeen {
  public:
   /// `profile` may be null; it outlives this.
   explicit ModesSeen(const drive::Profile* profile) : profile_(profile) {}
+
+  /// The family of one node, where it is not that of the others.
+  void set_family(std::uint8_t node, const drive::Profile* profile) { families_[node] = profile; }
 
   /// A mode of CiA 402-2; 0: not known.
   std::int8_t of(std::uint8_t node) const { return nodes_[node % nodes_.size()].mode; }
@@ -34,10 +38,11 @@ class ModesSeen {
     std::optional<std::int8_t> pending;  ///< Of a write whose acknowledge has not come.
   };
 
-  std::int8_t meaning_of(std::int8_t mode) const;
-  void ask(Node& node, std::int8_t mode) const;
+  std::int8_t meaning_of(std::uint8_t id, std::int8_t mode) const;
+  void ask(std::uint8_t id, Node& node, std::int8_t mode) const;
 
   const drive::Profile* profile_;
+  std::map<std::uint8_t, const drive::Profile*> families_;
   std::array<Node, 128> nodes_{};
 };
 

@@ -27,7 +27,9 @@ constexpr StrayWords kRecords{"{0}: 1 record is no frame and left out, the first
 
 }  // namespace
 
-Result<std::string> read_recording(std::string_view path) { return read_file(std::string(path), kMaxFile); }
+Result<std::string> read_recording(std::string_view path) {
+  return read_file(path == "-" ? std::string("/dev/stdin") : std::string(path), kMaxFile);
+}
 
 std::vector<std::string> notices(std::string_view path, const Strays& strays) {
   std::vector<std::string> out;
@@ -38,6 +40,18 @@ std::vector<std::string> notices(std::string_view path, const Strays& strays) {
   };
   tell(strays.unknown, words.no_frame, words.no_frames);
   tell(strays.unsuited, words.unsuited, words.several_unsuited);
+  if (strays.assumed_base != 0)
+    out.push_back(formatted(
+        fmt::runtime(
+            strays.assumed_base == 16
+                ? "{}: identifiers are read as hexadecimal, by how the data are written; `--columns` can say "
+                  "otherwise"
+                : "{}: identifiers are read as decimal, by how the lines are written; `--columns` can say "
+                  "otherwise"),
+        path));
+  if (strays.lacks_unit)
+    out.push_back(formatted(
+        "{}: the times have no unit and are left out; `--columns` can name it: time:ms, time:us", path));
   return out;
 }
 
@@ -48,15 +62,34 @@ Result<void> check_damage(std::string_view path, const Strays& strays) {
               "was it copied before it was complete? What stands in front of that byte is read");
 }
 
-Strays for_each_frame_of(std::string_view recording, std::string_view channel,
-                         const can::TakeLogFrame& take) {
-  return for_each_frame(recording, [&](const can::LogFrame& line) {
-    return (!channel.empty() && line.interface_name != channel) || take(line);
-  });
+Result<void> check_base(std::string_view path, const Strays& strays) {
+  if (strays.open_base == 0) return {};
+  return fail(
+      Errc::usage,
+      formatted("{}: nothing in it says whether its numbers are decimal or hexadecimal (line {})", path,
+                strays.open_base),
+      "say it with the columns: `--columns time,id:hex,data:hex` or `--columns time,id:dec,data:dec`");
 }
 
-Result<void> check_channel(std::string_view path, std::string_view recording, std::string_view channel) {
-  const auto frames = can::frames_of_buses(recording);
+Result<void> check_base_is_certain(std::string_view path, const Strays& strays) {
+  if (strays.assumed_base == 0) return check_base(path, strays);
+  return fail(
+      Errc::usage,
+      formatted("{}: nothing in it says whether its identifiers are decimal or hexadecimal", path),
+      "frames are sent only if it is certain: say it with the columns, `--columns time,id:hex,data:hex`");
+}
+
+Strays for_each_frame_of(std::string_view recording, std::string_view channel, const can::TakeLogFrame& take,
+                         const can::ReadOptions& options) {
+  const auto of_channel = [&](const can::LogFrame& line) {
+    return (!channel.empty() && line.interface_name != channel) || take(line);
+  };
+  return for_each_frame(recording, of_channel, options);
+}
+
+Result<void> check_channel(std::string_view path, std::string_view recording, std::string_view channel,
+                           const can::ReadOptions& options) {
+  const auto frames = can::frames_of_buses(recording, options);
   if (channel.empty() ? frames.size() < 2 : frames.count(std::string(channel)) > 0) return {};
   const auto list = can::list_of(frames);
   if (!channel.empty())
@@ -67,7 +100,16 @@ Result<void> check_channel(std::string_view path, std::string_view recording, st
                         frames.begin()->first));
 }
 
-tl::unexpected<Error> no_frames(std::string_view path) {
+tl::unexpected<Error> no_frames(std::string_view path, const Strays& strays) {
+  if (strays.ethercat > 0)
+    return fail(Errc::file, formatted("{} is a capture of EtherCAT, not of CAN", path),
+                "Wireshark shows the datagrams of EtherCAT; decode reads CAN");
+  if (!strays.first_text.empty())
+    return fail(
+        Errc::file,
+        formatted("{} contains no CAN frames; line {} is '{}'", path, strays.first, strays.first_text),
+        "if that is a frame, name its columns: `--columns time,id,data`; recordings of candump, .asc, .trc, "
+        ".blf, pcap and many tools need none");
   return fail(
       Errc::file, formatted("{} contains no CAN frames", path),
       "a recording is a candump file (`--trace FILE` writes `candump -L`), .asc, .trc, .blf, or a pcap or "

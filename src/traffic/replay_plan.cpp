@@ -27,16 +27,18 @@ constexpr std::size_t kMostKinds = 6;
 bool is_of_canopen(const can::Frame& frame) { return !frame.error && !frame.extended; }
 
 /// Every node-ID the CAN-IDs of the recording speak of, by the pre-defined connection set.
-std::set<std::uint8_t> nodes_in(std::string_view recording, std::string_view channel) {
+std::set<std::uint8_t> nodes_in(std::string_view recording, std::string_view channel,
+                                const can::ReadOptions& read) {
   std::set<std::uint8_t> out;
-  (void)for_each_frame_of(recording, channel, [&](const can::LogFrame& line) {
+  const auto note = [&](const can::LogFrame& line) {
     const auto& frame = line.frame;
     if (!is_of_canopen(frame) || frame.id > canopen::kErrorControl + canopen::kLastNode) return true;
     const auto nmt = canopen::parse_nmt(frame);
     const auto node = nmt ? nmt->node : static_cast<std::uint8_t>(frame.id & canopen::kLastNode);
     if (node >= canopen::kFirstNode && node <= canopen::kLastNode) out.insert(node);
     return true;
-  });
+  };
+  (void)for_each_frame_of(recording, channel, note, read);
   return out;
 }
 
@@ -190,10 +192,11 @@ std::size_t ReplayPlan::dangerous() const {
                          [](std::size_t sum, const auto& kind) { return sum + kind.second; });
 }
 
-Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording, std::string_view channel) {
+Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording, std::string_view channel,
+                                 const can::ReadOptions& read_as) {
   ReplayDrives out;
   std::vector<session::SdoRequest> questions;
-  for (const auto node : nodes_in(recording, channel))
+  for (const auto node : nodes_in(recording, channel, read_as))
     questions.push_back({.node = node, .object = objects::kStatusword});
   const auto answers = desk.session->transfer(questions);
   std::vector<std::uint8_t> present;
@@ -220,11 +223,12 @@ ReplayPlan plan_replay(const show::Desk& desk, const ReplayChoice& wanted, std::
                        const ReplayDrives& drives) {
   Choice choice(desk, wanted, drives);
   std::size_t extended = 0;
-  auto strays = for_each_frame_of(recording, wanted.channel, [&](const can::LogFrame& line) {
+  const auto add = [&](const can::LogFrame& line) {
     if (is_of_canopen(line.frame)) choice.add(line);
     extended += line.frame.extended && !line.frame.error;
     return true;
-  });
+  };
+  auto strays = for_each_frame_of(recording, wanted.channel, add, wanted.read);
   auto out = std::move(choice).take();
   out.extended = extended;
   out.strays = strays;

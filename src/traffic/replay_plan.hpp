@@ -23,7 +23,8 @@ struct ReplayDrives {
 
 /// Asks the nodes of the recording, or of one of its buses, whether they are there, and what their PDOs are.
 /// Errc::bus or interrupted.
-Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording, std::string_view channel = {});
+Result<ReplayDrives> find_drives(show::Desk& desk, std::string_view recording, std::string_view channel = {},
+                                 const can::ReadOptions& read = {});
 
 /// Kinds of frames in words (`NMT start`, `write of Controlword`), and how many there are of each.
 using FrameKinds = std::map<std::string, std::size_t>;
@@ -48,6 +49,7 @@ struct ReplayChoice {
   std::span<const std::string> only;  ///< Services, of kServices; empty: all.
   bool of_master = false;             ///< Only what a master sends.
   std::string_view channel = {};      ///< Of this bus of the recording; empty: of all.
+  can::ReadOptions read = {};         ///< How the recording is written.
 };
 
 /// Chooses the frames; reports of the controller and 29-bit identifiers are none

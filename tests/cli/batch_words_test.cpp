@@ -24,6 +24,7 @@ const std::map<std::string, std::string, std::less<>> kRightLines{
     {"cabinet show", "cabinet show"},
     {"cabinet swap", "cabinet swap lift"},
     {"clone", "clone --from 1 --to 2"},
+    {"decode", "decode recording.log --around emcy"},
     {"doctor", "doctor"},
     {"enable", "enable"},
     {"home", "home 35"},

@@ -73,8 +73,17 @@ std::string filled_in(std::string text) {
 }
 
 /// Commands of others, words of batch files and values.
-const std::set<std::string> kNoCommands{"candump -L", "all",         "end",    "--trace FILE",
-                                        "use 1",      "use 1,3,5-8", "use all"};
+const std::set<std::string> kNoCommands{"candump -L",
+                                        "all",
+                                        "end",
+                                        "--trace FILE",
+                                        "use 1",
+                                        "use 1,3,5-8",
+                                        "use all",
+                                        "time:ms,-,id:dec,len,data",
+                                        "id=CAN ID,data=Payload",
+                                        "time date id len data byte type channel ext rtr error -",
+                                        "?columns=time,id:hex,data:hex"};
 
 bool lacks_words(const Words& words) {
   const auto parsed = parse_line(words);

@@ -24,6 +24,7 @@ OPTIONAL = {
        for kind in ("status_can", "status_ring", "info_can", "info_ring", "info_line")},
     **{f"defs.schema.json#/$defs/{kind}/properties/other_axes": "only where the node has several axes"
        for kind in ("status_can", "status_ring")},
+    "defs.schema.json#/$defs/frame/properties/clock": "only with `--clock`",
     "pdo-file.schema.json#/properties/family": "a person may leave it out of the file",
     **{f"pdo-file.schema.json#/properties/pdo/items/properties/{key}": LEFT_OUT
        for key in ("cob_id", "valid", "type", "inhibit_us", "event_ms", "sync_start", "map")},

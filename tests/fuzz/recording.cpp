@@ -18,6 +18,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     return count < 10'000;
   });
   if (strays.damage) fuzz::require(strays.damage->offset <= size, "damage lies in the file");
+  // As the user names the columns.
+  static const auto columns = can::ColumnChoice::parse("time:ms,-,id:hex,len,data:hex");
+  (void)can::for_each_frame(
+      input, [](const can::LogFrame& line) { return fuzz::require(line.frame.size <= 8, "as above"), true; },
+      {.columns = &*columns});
   std::size_t first = 0;
   (void)can::for_each_frame(input, [&](const can::LogFrame&) { return ++first == 0; });
   fuzz::require(first <= 1, "who wants no more gets no more");

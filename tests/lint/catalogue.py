@@ -21,6 +21,8 @@ CATALOGUE = 'src/report/zh.po'
 OTHERS = 'src/report/not_for_people.po'
 # Chinese in sources: below the layer of the catalogue, or what is recognised and not said.
 CHINESE_SOURCES = {
+    'src/can/log_column_names.cpp': 'headings that are recognised',
+    'src/can/log_fields.cpp': 'words that are recognised',
     'src/drive/cia402.cpp': 'names of states, in both languages as the data of the families are',
     'src/od/esi_entry.cpp': 'notes of entries made from a file, in both languages as those of the data are',
     'src/od/esi_pdos.cpp': 'notes and names of entries made from a file, likewise',
