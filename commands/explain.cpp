@@ -10,6 +10,7 @@
 #include "report/catalogue.hpp"
 #include "show/explanation.hpp"
 #include "show/topic_page.hpp"
+#include "traffic/explained_frame.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -29,6 +30,7 @@ constexpr Parameter kExplainParameters[] = {
 struct Shelf {
   std::vector<std::shared_ptr<const drive::Profile>> profiles;
   std::vector<show::Library> libraries;
+  std::vector<drive::EverydayWords> everyday;
 };
 
 /// What the program knows by itself it tells itself.
@@ -47,6 +49,9 @@ Result<Shelf> open_shelf(Context& context) {
     leave_out_own(*topics);
     auto own = std::vector{show::al_status_topic()};
     drive::remove_foreign_topics(own, *context.profile);
+    auto everyday = drive::load_everyday_words(*context.profile, context.drive_folders);
+    if (!everyday) return fail(everyday.error());
+    out.everyday = std::move(*everyday);
     std::move(own.begin(), own.end(), std::back_inserter(*topics));
     out.libraries.push_back({context.profile, std::move(*topics), false});
     return out;
@@ -62,6 +67,12 @@ Result<Shelf> open_shelf(Context& context) {
     leave_out_own(*topics);
     const bool standard = (*profile)->is_generic();
     if (standard) topics->push_back(show::al_status_topic());
+    if (auto everyday = standard ? drive::load_everyday_words(**profile, context.drive_folders)
+                                 : Result<std::vector<drive::EverydayWords>>()) {
+      std::move(everyday->begin(), everyday->end(), std::back_inserter(out.everyday));
+    } else {
+      context.notices.push_back(everyday.error().message);
+    }
     out.profiles.push_back(std::move(*profile));
     show::Library library{out.profiles.back().get(), std::move(*topics), !standard};
     out.libraries.insert(standard ? out.libraries.begin() : out.libraries.end(), std::move(library));
@@ -141,22 +152,24 @@ Result<report::Value> all_topics(const Context& context, const Shelf& shelf) {
   return answer(show::topic_list(all, context.chinese, page_width(context)), all);
 }
 
-/// Whether the standard explains these words, which the family's data exclude: nothing was found, or only
-/// texts and rows in which they stand.
-bool is_of_the_standard_alone(const Context& context, std::string_view said,
+/// Whether the standard has something of this name, which the family's data exclude: nothing was found, or
+/// only texts and rows in which the words stand. Of what people have many names for, a text tells enough.
+bool is_of_the_standard_alone(const Context& context, const show::TopicQuery& query,
                               std::span<const Explanation> found) {
   if (context.profile == nullptr || context.profile->is_generic()) return false;
-  if (!found.empty() && found.front().found < Found::row) return false;
+  if (!found.empty() && (found.front().found < Found::row || query.thing() != nullptr)) return false;
   const auto standard = drive::shared_profile(drive::kStandardFamily, context.drive_folders);
   auto topics = standard ? drive::load_own_topics(**standard) : Result<std::vector<drive::Topic>>();
   if (!standard || !topics) return false;
   topics->push_back(show::al_status_topic());
   const std::vector<show::Library> shelf{{standard->get(), std::move(*topics), false}};
-  const auto standards = show::explanations(show::TopicQuery(said), shelf, false);
-  return !standards.empty() && (found.empty() || standards.front().found < Found::row);
+  const auto standards = show::explanations(show::TopicQuery(query.whole()), shelf, false);
+  return !standards.empty() && standards.front().found < Found::row;
 }
 
-tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf, std::string_view said) {
+tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf,
+                                     const show::TopicQuery& query) {
+  const std::string_view said = query.whole();
   const auto family = context.profile == nullptr ? std::string() : context.profile->family;
   auto hint = did_you_mean(said, show::explained_names(shelf.libraries));
   if (hint.empty())
@@ -171,30 +184,43 @@ tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf,
               std::move(hint));
 }
 
+/// What the family's manual lacks, and the standard has all the same.
+void note_absent(Context& context, const show::TopicQuery& query) {
+  if (context.profile == nullptr) return;
+  if (auto absent = show::not_in_manual(query, *context.profile); !absent.empty())
+    context.notices.push_back(std::move(absent));
+}
+
 Result<report::Value> run_explain(Context& context, const Arguments& arguments) {
   std::string said;
   for (const auto& word : arguments.all("word")) append(said, word, " ");
   auto shelf = open_shelf(context);
   if (!shelf) return fail(shelf.error());
   if (trim(said).empty()) return all_topics(context, *shelf);
-  const show::TopicQuery query(said);
+  if (const auto frame = traffic::explained_frame(said, *shelf->libraries.front().profile))
+    return told(context, std::span(&*frame, 1), false);
+  const show::TopicQuery query(said, shelf->everyday);
   auto all = show::explanations(query, shelf->libraries, context.chinese);
-  const bool in_families = all.empty() && context.profile == nullptr;
+  const bool in_families = context.profile == nullptr && (all.empty() || all.front().found == Found::text);
   if (in_families) {
     for (auto& library : shelf->libraries) library.by_name_only = false;
     all = show::explanations(query, shelf->libraries, context.chinese);
   }
-  if (is_of_the_standard_alone(context, said, all))
+  if (all.empty() && context.profile != nullptr)
+    if (auto absent = show::not_in_manual(query, *context.profile); !absent.empty())
+      return fail(Errc::negative, std::move(absent));
+  if (is_of_the_standard_alone(context, query, all))
     return fail(Errc::negative, formatted("not on this drive: {} has no '{}'", context.profile->family, said),
                 formatted("`explain {}` without -d shows the meaning in the standard", said));
-  if (all.empty()) return no_entry_found(context, *shelf, said);
+  if (all.empty()) return no_entry_found(context, *shelf, query);
+  note_absent(context, query);
   return told(context, all, in_families);
 }
 
 constexpr Example kExplainExamples[] = {
     {"explain AL.03", "a fault as the panel shows it: what it is and what to do"},
     {"explain homing 17", "a homing method, with a picture"},
-    {"explain CN3 -d da200", "a connector, pin by pin"},
+    {"explain statusword 0x1288", "what a value of an object means"},
 };
 
 }  // namespace
@@ -207,8 +233,10 @@ const Command kExplain{
         "Works without a bus. Knows objects, panel parameters, faults, SDO abort codes, exit codes (`explain "
         "exit 5`), AL status codes of EtherCAT (`explain 0x001B`), and the topics of the manuals: wiring, plugs, "
         "panel, LEDs, states, modes, homing methods (`explain homing 7`), bits, inputs and outputs (`explain DI "
-        "28`). A number is that of a row as it is printed, a hexadecimal one with 0x, h or neither. Words that "
-        "are no name are looked for in titles and texts. Without -d the standard and what has this very name in "
+        "28`). A number is that of a row as it is printed, a hexadecimal one with 0x, h or neither. Explains "
+        "a value of an object (`explain 6041h=0x0637`), a number alone (`explain 4744`) and a CAN frame (`explain "
+        "581#8002650000000206`). Words that are no name are looked for in names, titles and texts, in any order; of "
+        "many things the everyday names are known (`explain multi-turn reset`). Without -d the standard and what has this very name in "
         "any family, else the words in all families; without a word the topics by kind. --lang zh takes the Chinese texts.",
     .parameters = kExplainParameters,
     .examples = kExplainExamples,

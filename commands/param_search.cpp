@@ -3,7 +3,9 @@
 #include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "show/explanation.hpp"
 #include "show/object_records.hpp"
+#include "show/parameter_search.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::commands {
@@ -19,34 +21,26 @@ constexpr Parameter kParamSearchParameters[] = {
      .many = true},
 };
 
-/// How well the parameter fits one word: 0 in its number or name, 1 in a label, 2 in the note, 3 not at all.
-int rank(const od::Parameter& p, std::string_view word) {
-  if (show::contains_nocase(p.id, word) || show::contains_nocase(p.name, word) ||
-      show::contains_nocase(p.name_zh, word))
-    return 0;
-  for (const auto& label : p.labels)
-    if (show::contains_nocase(label.label, word) || show::contains_nocase(label.label_zh, word)) return 1;
-  return show::contains_nocase(p.note, word) || show::contains_nocase(p.note_zh, word) ? 2 : 3;
-}
-
 Result<report::Value> run_param_search(Context& context, const Arguments& arguments) {
-  if (const auto any = show::check_parameters(*context.profile); !any) return fail(any.error());
-  std::vector<std::pair<int, const od::Parameter*>> found;
+  const auto& profile = *context.profile;
+  if (const auto any = show::check_parameters(profile); !any) return fail(any.error());
   std::string said;
   for (const auto& word : arguments.all("word")) append(said, word, " ");
-  for (const auto& parameter : context.profile->parameters) {
-    int worst = 0;
-    for (const auto& word : arguments.all("word")) worst = std::max(worst, rank(parameter, word));
-    if (worst < 3) found.emplace_back(worst, &parameter);
-  }
+  const auto everyday = drive::load_everyday_words(profile, context.drive_folders);
+  if (!everyday) return fail(everyday.error());
+  const show::TopicQuery query(said, *everyday);
+  std::vector<std::pair<show::WordsIn, const od::Parameter*>> found;
+  for (const auto& parameter : profile.parameters)
+    if (const auto place = show::words_in(query, parameter)) found.emplace_back(*place, &parameter);
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<const od::Parameter*> best;
   for (const auto& entry : found) best.push_back(entry.second);
-  if (best.empty())
-    return fail(Errc::negative, formatted("no parameter of {} mentions '{}'", context.profile->family, said),
-                "try a shorter word, or the Chinese or English one");
-  return report::Value(show::parameter_table(best, context.chinese));
+  if (!best.empty()) return report::Value(show::parameter_table(best, context.chinese));
+  const auto absent = show::not_in_manual(query, profile);
+  if (!absent.empty()) return fail(Errc::negative, absent);
+  return fail(Errc::negative, formatted("no parameter of {} mentions '{}'", profile.family, said),
+              formatted("`explain {}` looks in objects, faults and topics as well", said));
 }
 
 constexpr Example kParamSearchExamples[] = {
@@ -61,7 +55,8 @@ const Command kParamSearch{
     .path = "param search",
     .summary = "Find panel parameters by words, in English or Chinese",
     .details =
-        "Searches numbers, names, labels and notes; matches in the name come first. Works without a bus.",
+        "Searches numbers, names, labels and notes; matches in the name come first. The words are understood as by "
+        "`explain`. Works without a bus.",
     .parameters = kParamSearchParameters,
     .examples = kParamSearchExamples,
     .needs = Needs::dictionary,

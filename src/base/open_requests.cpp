@@ -123,6 +123,11 @@ bool OpenRequests::has(AnswerForm answer) const {
                      [&](const Request& request) { return request.answer == answer; });
 }
 
+bool OpenRequests::has_older() const {
+  return std::any_of(open_.begin(), open_.end(),
+                     [&](const Request& request) { return request.transfer != transfer_; });
+}
+
 void OpenRequests::forget_older() {
   std::erase_if(open_, [&](const Request& request) { return request.transfer != transfer_; });
 }

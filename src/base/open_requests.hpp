@@ -56,6 +56,8 @@ class OpenRequests {
   bool is_clear(AnswerForm answer) const;
   /// Whether a request of this form is open.
   bool has(AnswerForm answer) const;
+  /// Whether something else than the present transfer may still be answered.
+  bool has_older() const;
   /// Nothing that was asked so far is answered any more, the present transfer apart.
   void forget_older();
   /// The present transfer was answered, in whatever form.

@@ -94,12 +94,33 @@ void SdoClient::on_frame(const can::Frame& frame, TimePoint now) {
   if (frame.id == kSdoRequest + node_) return on_foreign_request(frame, now);
   if (frame.id == kErrorControl + node_ && frame.size == 1 && frame.data[0] == 0) return on_boot_up(now);
   if (frame.id != kSdoAnswer + node_) return;
-  if (frame.size != 8) {
+  const bool in_block = state_ == State::block_upload_data;
+  const auto whole = whole_sdo_answer(frame, in_block);
+  if (!whole) {
     if (state_ != State::idle)
       abort(sdo_abort::kCommand, Errc::protocol,
             formatted("its answer has {} bytes instead of 8", frame.size));
     return;
   }
+  if (frame.size != whole->size) note(SdoHabit::short_answer);
+  on_answer(with_object(*whole), now);
+}
+
+/// Some servers put no object into an abort. It is for the request that is open, if there is only one.
+can::Frame SdoClient::with_object(const can::Frame& answer) {
+  auto out = answer;
+  const bool waits = state_ != State::idle && state_ != State::copy && state_ != State::block_upload_data;
+  const bool nameless = answer.data[0] == kSdoAbortCommand && sdo_object(answer) == ObjectAddress{};
+  if (!waits || !nameless || foreign_request_ || core_.open().has_older()) return out;
+  const auto asked = state_ == State::resync ? check_ : object_;
+  if (asked != ObjectAddress{}) note(SdoHabit::abort_without_object);
+  out.data[1] = static_cast<std::uint8_t>(asked.index);
+  out.data[2] = static_cast<std::uint8_t>(asked.index >> 8U);
+  out.data[3] = asked.sub;
+  return out;
+}
+
+void SdoClient::on_answer(const can::Frame& frame, TimePoint now) {
   const bool again = std::exchange(last_answer_, frame) == frame;
   if (is_anonymous()) core_.open().pass_copy();
   // Toggle bits alternate: what is equal is one answer that came twice.
@@ -157,7 +178,11 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   const bool size_indicated = (frame.data[0] & 0x01U) != 0;
   if (expedited) {
     const std::size_t known = size_ == 0 ? 4 : std::min<std::size_t>(size_, 4);
-    const std::size_t size = size_indicated ? 4U - (frame.data[0] >> 2U & 0x03U) : known;
+    std::size_t size = size_indicated ? 4U - (frame.data[0] >> 2U & 0x03U) : known;
+    if (size == 4 && known < size && (sdo_data(frame) >> (known * 8)) == 0) {
+      if (size_indicated) note(SdoHabit::always_four_bytes);
+      size = known;
+    }
     finish(Bytes(frame.data.begin() + 4, frame.data.begin() + 4 + static_cast<std::ptrdiff_t>(size)));
     return;
   }
@@ -191,12 +216,12 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
   const auto size = 7 - (frame.data[0] >> 1U & 0x07);
   data_.insert(data_.end(), frame.data.begin() + 1, frame.data.begin() + 1 + size);
   const bool last = (frame.data[0] & 0x01U) != 0;
-  if (data_.size() > announced_.value_or(kMaxSdoUpload) ||
-      (last && announced_ && data_.size() < *announced_)) {
+  if (data_.size() > announced_.value_or(kMaxSdoUpload)) {
     abort(sdo_abort::kLength, Errc::protocol,
           formatted("it announced {} bytes and sent {}", announced_.value_or(kMaxSdoUpload), data_.size()));
     return;
   }
+  if (last && announced_ && data_.size() < *announced_) note(SdoHabit::announced_more);
   if (last) return finish(std::exchange(data_, {}));
   toggle_ ^= kToggleBit;
   request_segment(now);

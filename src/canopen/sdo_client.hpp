@@ -1,8 +1,10 @@
 #pragma once
 
+#include <bitset>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
@@ -11,6 +13,7 @@
 #include "can/frame.hpp"
 #include "canopen/sdo_block.hpp"
 #include "canopen/sdo_core.hpp"
+#include "canopen/sdo_habits.hpp"
 #include "canopen/transfer.hpp"
 
 namespace servoctl::canopen {
@@ -67,6 +70,8 @@ class SdoClient {
   std::optional<can::Frame> take_frame();  ///< The next frame to send, if any.
   std::optional<Result<Bytes>>
   take_result();  ///< Set once, when the transfer has ended; empty bytes after a download.
+  /// What of the server deviated from CiA 301 since the last call, by SdoHabit.
+  std::bitset<kSdoHabits> take_habits() { return std::exchange(habits_, {}); }
   TimePoint deadline() const {
     return core_.deadline();
   }  ///< When on_time() has something to do; kNever while idle.
@@ -93,6 +98,9 @@ class SdoClient {
     block_download_end,
   };
 
+  void on_answer(const can::Frame& frame, TimePoint now);
+  can::Frame with_object(const can::Frame& abort);
+  void note(SdoHabit habit) { habits_.set(static_cast<std::size_t>(habit)); }
   bool is_first_answer(const can::Frame& frame, TimePoint now);
   void begin(TimePoint now);
   void begin_wanted(TimePoint now);
@@ -154,6 +162,7 @@ class SdoClient {
   std::optional<can::Frame> acknowledged_;  ///< The acknowledge received last.
   std::optional<can::Frame> last_answer_;   ///< Of whatever transfer.
   std::optional<can::Frame> tx_;
+  std::bitset<kSdoHabits> habits_;
   std::optional<can::Frame> following_;  ///< To be sent behind `tx_`.
 };
 

@@ -88,7 +88,8 @@ void SdoClient::on_block_upload_end(const can::Frame& frame, TimePoint) {
           "disturbed bus, or the object changed while being read: try again");
     return;
   }
-  if (announced_ && data.size() != *announced_) {
+  if (announced_ && data.size() < *announced_) note(SdoHabit::announced_more);
+  if (announced_ && data.size() > *announced_) {
     abort(sdo_abort::kLength, Errc::protocol,
           formatted("it announced {} bytes and sent {}", *announced_, data.size()));
     return;

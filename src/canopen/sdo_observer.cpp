@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "canopen/sdo_frame.hpp"
+#include "canopen/sdo_habits.hpp"
 
 namespace servoctl::canopen {
 
@@ -37,8 +38,10 @@ SdoStep SdoObserver::on_client_frame(const can::Frame& frame) {
   return out;
 }
 
-SdoStep SdoObserver::on_server_frame(const can::Frame& frame) {
-  if (frame.size != 8) return {};
+SdoStep SdoObserver::on_server_frame(const can::Frame& answer) {
+  const auto whole = whole_sdo_answer(answer, phase_ == Phase::block_up);
+  if (!whole) return {};
+  const auto& frame = *whole;
   const auto command = frame.data[0];
   if (command == kSdoAbortCommand) return abort(frame);
   if (phase_ == Phase::block_up) return block_segment(frame);
@@ -145,7 +148,9 @@ SdoStep SdoObserver::block_end(const can::Frame& frame) {
 
 SdoStep SdoObserver::abort(const can::Frame& frame) {
   auto out = step(Kind::abort);
-  out.object = sdo_object(frame);
+  // Some servers name no object: it belongs to the transfer that is under way.
+  const auto named = sdo_object(frame);
+  out.object = named == ObjectAddress{} ? object_.value_or(named) : named;
   out.abort_code = sdo_data(frame);
   object_.reset();
   data_.clear();

@@ -38,7 +38,7 @@ struct SdoStep {
 class SdoObserver {
  public:
   SdoStep on_client_frame(const can::Frame& frame);
-  SdoStep on_server_frame(const can::Frame& frame);
+  SdoStep on_server_frame(const can::Frame& answer);
 
  private:
   enum class Phase : std::uint8_t { none, block_up, block_down };

@@ -158,7 +158,13 @@ std::vector<std::string> CanNetwork::take_notices() {
   std::vector<std::string> out;
   for (const auto report : take_reports()) out.push_back(url_ + ": " + std::string(can::text(report)));
   for (auto& notice : bus_->take_notices()) out.push_back(std::move(notice));
+  for (auto& notice : std::exchange(habit_notices_, {})) out.push_back(std::move(notice));
   return out;
+}
+
+void CanNetwork::tell_habit(std::uint8_t node, canopen::SdoHabit habit) {
+  if (told_habits_.emplace(node, habit).second)
+    habit_notices_.push_back(formatted("node {}: {}", node, canopen::text(habit)));
 }
 
 std::string CanNetwork::silence_hint(std::uint8_t node) const {

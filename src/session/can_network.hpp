@@ -23,6 +23,7 @@
 #include "canopen/node_guard.hpp"
 #include "canopen/node_watch.hpp"
 #include "canopen/pdo.hpp"
+#include "canopen/sdo_habits.hpp"
 #include "session/network.hpp"
 #include "session/sync_production.hpp"
 
@@ -181,6 +182,8 @@ class CanNetwork final : public Network {
   /// The same for SYNC.
   Result<TimePoint> send_sync();
   void hear(const can::Frame& frame);
+  /// Once for each node.
+  void tell_habit(std::uint8_t node, canopen::SdoHabit habit);
   Result<void> on_report(can::ControllerReport report);
   /// To the channel of the node that the frame belongs to by the pre-defined connection set: answers, what
   /// other masters ask, boot-up.
@@ -198,6 +201,8 @@ class CanNetwork final : public Network {
   can::WireErrors wire_errors_;
   TimePoint wire_error_at_ = TimePoint::min();  ///< When the last one came.
   std::vector<can::ControllerReport> reports_;
+  std::set<std::pair<std::uint8_t, canopen::SdoHabit>> told_habits_;
+  std::vector<std::string> habit_notices_;
   std::optional<can::ControllerReport> last_report_;
   std::map<std::uint8_t, KnownPdos> pdos_;
   std::optional<canopen::LssAddress> lss_selection_;

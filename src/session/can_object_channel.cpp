@@ -67,6 +67,9 @@ void CanObjectChannel::start_download(ObjectAddress object, Bytes data, TimePoin
 
 std::optional<Result<Bytes>> CanObjectChannel::take_result() {
   auto result = client_.take_result();
+  const auto habits = client_.take_habits();
+  for (std::size_t i = 0; habits.any() && i < habits.size(); ++i)
+    if (habits.test(i)) network_->tell_habit(client_.node(), static_cast<canopen::SdoHabit>(i));
   if (!result || !*result || object_ != objects::kEmergencyCobId) return result;
   if ((*result)->size() == 4) emergency_id_ = static_cast<std::uint32_t>(load_le(**result));
   if (emergency_id_) network_->watch_.learn_emergency_id(client_.node(), *emergency_id_);

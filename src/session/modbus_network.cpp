@@ -61,8 +61,12 @@ void ModbusNetwork::leave(ModbusObjectChannel& channel) {
 TimePoint ModbusNetwork::next_event() const {
   if (client_.busy()) return client_.deadline();
   auto out = kNever;
-  for (const auto* channel : waiting_) out = std::min(out, client_.free_at(channel->node()));
+  for (const auto* channel : waiting_) out = std::min(out, free_at(*channel));
   return out;
+}
+
+TimePoint ModbusNetwork::free_at(const ModbusObjectChannel& channel) const {
+  return std::max(client_.free_at(channel.node()), channel.not_before());
 }
 
 /// What answers a request that was given up answers a further try of it as well.
@@ -90,9 +94,8 @@ Result<void> ModbusNetwork::pump() {
   if (client_.busy() || waiting_.empty()) return {};
   if (hand_over_late()) return {};
   const auto time = now();
-  const auto next = std::find_if(waiting_.begin(), waiting_.end(), [&](const auto* channel) {
-    return client_.free_at(channel->node()) <= time;
-  });
+  const auto next = std::find_if(waiting_.begin(), waiting_.end(),
+                                 [&](const auto* channel) { return free_at(*channel) <= time; });
   if (next == waiting_.end()) return {};
   asking_ = *next;
   waiting_.erase(next);

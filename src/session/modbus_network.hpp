@@ -88,6 +88,8 @@ class ModbusNetwork final : public Network {
   std::uint16_t presence_register(std::uint8_t node) const;
   /// Sends the next request when its time has come.
   Result<void> pump();
+  /// When the channel may ask.
+  TimePoint free_at(const ModbusObjectChannel& channel) const;
   bool hand_over_late();
   Bytes check_for(const ModbusObjectChannel& channel) const;
   void leave(ModbusObjectChannel& channel);

@@ -11,6 +11,8 @@ namespace {
 using modbus::Outcome;
 
 constexpr std::size_t kRegisterBytes = 2;
+/// Between two requests to a unit that is busy.
+constexpr Duration kBusyPause = std::chrono::milliseconds(20);
 
 }  // namespace
 
@@ -49,6 +51,8 @@ void ModbusObjectChannel::start_request(Bytes pdu) {
 void ModbusObjectChannel::ask(Way way, Bytes pdu) {
   way_ = way;
   pdu_ = std::move(pdu);
+  not_before_ = TimePoint::min();
+  busy_until_ = kNever;
   network_->waiting_.push_back(this);
 }
 
@@ -129,6 +133,7 @@ void ModbusObjectChannel::on_outcome(const Outcome& outcome) {
                                                what_text(), to_hex(outcome.pdu)),
                                      "is this device what -d says?")));
     case Outcome::Kind::refused:
+      if (repeats_while_busy(outcome.pdu[1])) return;
       if (modbus::is_open(outcome.pdu[1])) return finish(fail(refusal(outcome.pdu[1])));
       if (way_ == Way::presence) break;
       return finish(fail(refusal(outcome.pdu[1])));
@@ -139,6 +144,17 @@ void ModbusObjectChannel::on_outcome(const Outcome& outcome) {
   if (way_ == Way::write) return finish(Bytes());
   if (way_ == Way::request) return finish(outcome.pdu);
   finish(store_le(modbus::load_be16(ByteSpan(outcome.pdu).subspan(2)), kRegisterBytes));
+}
+
+/// A busy unit has done nothing of the request: it is asked once more, until its time is over.
+bool ModbusObjectChannel::repeats_while_busy(std::uint8_t exception) {
+  if (exception != static_cast<std::uint8_t>(modbus::Exception::device_busy)) return false;
+  const auto now = network_->now();
+  if (busy_until_ == kNever) busy_until_ = now + timeout_;
+  if (now + kBusyPause > busy_until_) return false;
+  not_before_ = now + kBusyPause;
+  network_->waiting_.push_back(this);
+  return true;
 }
 
 void ModbusObjectChannel::finish(Result<Bytes> result) {

@@ -38,6 +38,8 @@ class ModbusObjectChannel final : public ObjectChannel {
   /// Whether what is asked is a further try.
   bool is_again() const { return again_; }
   void on_outcome(const modbus::Outcome& outcome);
+  /// Before this time it does not ask: the unit was busy.
+  TimePoint not_before() const { return not_before_; }
   /// The line is lost: what was under way ends without a result.
   void forget();
 
@@ -47,6 +49,7 @@ class ModbusObjectChannel final : public ObjectChannel {
   void ask(Way way, Bytes pdu);
   void refuse(ObjectAddress object, std::string what, std::string hint);
   void refuse_unknown(ObjectAddress object);
+  bool repeats_while_busy(std::uint8_t exception);
   void finish(Result<Bytes> result);
   Error refusal(std::uint8_t exception) const;
   Error silence(const modbus::Outcome& outcome) const;
@@ -58,7 +61,9 @@ class ModbusObjectChannel final : public ObjectChannel {
   Way way_ = Way::read;
   ObjectAddress object_;
   bool again_ = false;  ///< As try_again() says, until the transfer has ended.
-  Bytes pdu_;           ///< Empty while nothing is under way.
+  TimePoint not_before_ = TimePoint::min();
+  TimePoint busy_until_ = kNever;  ///< When a unit that says that it is busy has had its time.
+  Bytes pdu_;                      ///< Empty while nothing is under way.
   std::optional<Result<Bytes>> result_;
 };
 

@@ -70,10 +70,12 @@ void add_faults(const TopicQuery& query, const drive::Profile& profile, bool by_
     const bool of_its_code = !called && code && fault.code == code;
     if (called) named.push_back(&fault);
     if (of_its_code) of_code.push_back(&fault);
-    if (!called && !of_its_code && !by_name_only && query.mentions(fault.name + "\n" + fault.name_zh)) {
-      out.push_back(of_faults(profile, {&fault}, chinese));
-      out.back().found = Found::title;
-    }
+    if (called || of_its_code || by_name_only) continue;
+    const bool titled = query.mentions(searchable({fault.name, fault.name_zh}));
+    if (!titled && !query.mentions(searchable({fault.name, fault.name_zh, fault.check, fault.check_zh})))
+      continue;
+    out.push_back(of_faults(profile, {&fault}, chinese));
+    out.back().found = titled ? Found::title : Found::text;
   }
   if (named.empty())
     for (const auto& fault : profile.faults)

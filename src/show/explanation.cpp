@@ -16,6 +16,8 @@
 #include "show/explanation_parts.hpp"
 #include "show/lead_words.hpp"
 #include "show/object_records.hpp"
+#include "show/parameter_search.hpp"
+#include "show/printed_number.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::show {
@@ -78,6 +80,37 @@ void add_objects(const TopicQuery& query, const drive::Profile& profile, bool ch
   }
 }
 
+bool is_all_parameters(const drive::Profile& profile, const od::Object& object) {
+  return std::all_of(object.entries.begin(), object.entries.end(),
+                     [&](const od::Entry& entry) { return profile.parameter(entry.address) != nullptr; });
+}
+
+/// Objects in whose names the words stand, else the entries.
+void add_mentioning_objects(const TopicQuery& query, const drive::Profile& profile, bool chinese,
+                            std::vector<Explanation>& out) {
+  if (parse_object_address(query.subject())) return;
+  const auto known = [&](ObjectAddress address) {
+    return std::any_of(out.begin(), out.end(),
+                       [&](const Explanation& each) { return each.topic.object == address; });
+  };
+  const auto add = [&](Explanation found) {
+    if (known(*found.topic.object)) return;
+    found.found = Found::title;
+    out.push_back(std::move(found));
+  };
+  for (const auto& object : profile.dictionary.objects()) {
+    if (is_all_parameters(profile, object)) continue;
+    if (query.mentions(searchable({object.name, object.name_zh}))) {
+      add(of_object(profile, object, chinese));
+      continue;
+    }
+    for (const auto& entry : object.entries)
+      if (profile.parameter(entry.address) == nullptr &&
+          query.mentions(searchable({object.name + " " + entry.name, object.name_zh + entry.name_zh})))
+        add(of_entry(profile, object, entry, chinese));
+  }
+}
+
 /// What cautions of the family make of a motion goes behind the text of what they are about.
 void add_cautions(const drive::Profile& profile, const std::function<bool(const drive::Caution&)>& concerns,
                   drive::Topic& topic) {
@@ -105,7 +138,8 @@ void add_parameters(const TopicQuery& query, const drive::Profile& profile, bool
     const bool named = query.names(parameter.name) || query.names(parameter.name_zh);
     const bool placed = address && parameter.object == address;
     const bool meant = &parameter == by_id || (!by_name_only && (named || placed));
-    if (!meant && (by_name_only || !query.mentions(parameter.name + "\n" + parameter.name_zh))) continue;
+    const auto words = meant || by_name_only ? std::nullopt : words_in(query, parameter);
+    if (!meant && !words) continue;
     auto topic =
         topic_heading(profile.family, "parameter", parameter.id, parameter.id + " " + parameter.name,
                       parameter.name_zh.empty() ? std::string() : parameter.id + " " + parameter.name_zh);
@@ -114,7 +148,9 @@ void add_parameters(const TopicQuery& query, const drive::Profile& profile, bool
     add_cautions(
         profile, [&](const auto& caution) { return caution.name == parameter.id; }, topic);
     out.push_back({std::move(topic),
-                   meant ? Found::parameter : Found::title,
+                   meant                     ? Found::parameter
+                   : *words == WordsIn::name ? Found::title
+                                             : Found::text,
                    {},
                    parameter_record(parameter, chinese)});
   }
@@ -134,6 +170,13 @@ void add_topics(const TopicQuery& query, const Library& library, std::vector<Exp
   }
 }
 
+/// For the family that was named, or the standard.
+void add_number_of(const TopicQuery& query, std::span<const Library> libraries,
+                   std::vector<Explanation>& out) {
+  if (!libraries.empty() && !libraries.front().by_name_only)
+    add_number(query, *libraries.front().profile, out);
+}
+
 std::vector<Explanation> explained(const TopicQuery& query, std::span<const Library> libraries,
                                    bool chinese) {
   std::vector<Explanation> out;
@@ -143,9 +186,13 @@ std::vector<Explanation> explained(const TopicQuery& query, std::span<const Libr
     add_parameters(query, profile, library.by_name_only, chinese, out);
     add_faults(query, profile, library.by_name_only, chinese, out);
     add_topics(query, library, out);
+    if (library.by_name_only) continue;
+    add_mentioning_objects(query, profile, chinese, out);
+    add_value(query, library, out);
   }
   if (!libraries.empty()) add_abort(query, *libraries.front().profile, out);
   add_exit_code(query, out);
+  if (out.empty()) add_number_of(query, libraries, out);
   std::stable_sort(out.begin(), out.end(),
                    [](const Explanation& a, const Explanation& b) { return a.found < b.found; });
   return out;
@@ -171,12 +218,21 @@ std::vector<Explanation> explanations(const TopicQuery& query, std::span<const L
   auto out = explained(query, libraries, chinese);
   const auto led = without_lead(query.whole());
   if (!led || (!out.empty() && out.front().found < Found::row)) return out;
-  auto behind = explained(TopicQuery(led->rest), libraries, chinese);
+  auto behind = explained(query.of(led->rest), libraries, chinese);
   std::erase_if(behind, [&](const Explanation& each) { return each.found != led->found; });
   if (behind.empty() && led->found == Found::fault)
     for (const auto& library : libraries) add_counted_faults(led->rest, library, chinese, behind);
+  constexpr std::size_t kDigits = 4;
+  const auto code = led->rest.size() >= kDigits ? code_in(led->rest, kDigits) : std::nullopt;
+  if (behind.empty() && out.empty() && led->found == Found::fault && code)
+    add_number_of(query.of(formatted("0x{:04X}", *code)), libraries, out);
   out.insert(out.begin(), std::make_move_iterator(behind.begin()), std::make_move_iterator(behind.end()));
   return out;
+}
+
+std::string not_in_manual(const TopicQuery& query, const drive::Profile& profile) {
+  if (query.thing() == nullptr || !query.thing()->absent) return {};
+  return formatted("the manual of {} has nothing about '{}'", profile.family, query.whole());
 }
 
 std::vector<std::string> explained_names(std::span<const Library> libraries) {

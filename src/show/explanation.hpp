@@ -33,6 +33,9 @@ struct Library {
 std::vector<Explanation> explanations(const TopicQuery& query, std::span<const Library> libraries,
                                       bool chinese);
 
+/// What to say where the query names a thing of which the family's manual says nothing; else empty.
+std::string not_in_manual(const TopicQuery& query, const drive::Profile& profile);
+
 /// The names that a query may have meant.
 std::vector<std::string> explained_names(std::span<const Library> libraries);
 

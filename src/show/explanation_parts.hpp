@@ -28,6 +28,12 @@ void add_counted_faults(std::string_view number, const Library& library, bool ch
 /// Eight hexadecimal digits: of a class that CiA 301 has, or one that the family's own words tell of.
 void add_abort(const TopicQuery& query, const drive::Profile& profile, std::vector<Explanation>& out);
 
+/// An object or parameter and a value: `statusword 0x1288`, `6060h=3`.
+void add_value(const TopicQuery& query, const Library& library, std::vector<Explanation>& out);
+
+/// A number of 16 bits that nothing is called by: as error code, with its class, as status- and controlword.
+void add_number(const TopicQuery& query, const drive::Profile& profile, std::vector<Explanation>& out);
+
 void add_exit_code(const TopicQuery& query, std::vector<Explanation>& out);
 
 }  // namespace servoctl::show

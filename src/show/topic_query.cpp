@@ -7,7 +7,6 @@
 #include "base/number.hpp"
 #include "base/text.hpp"
 #include "show/printed_number.hpp"
-#include "show/words_in_text.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -29,17 +28,6 @@ std::string display_key(std::string_view text) {
     const bool zero = key[i] == '0' && i + 1 < key.size() && is_decimal_digit(key[i + 1]);
     if ((mark || zero) && !behind_digit) continue;
     out += key[i];
-  }
-  return out;
-}
-
-/// With a blank between Chinese and the digits behind it.
-std::string with_numbers_apart(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    const bool digit = c >= '0' && c <= '9';
-    if (digit && !out.empty() && static_cast<unsigned char>(out.back()) >= 0x80) out += ' ';
-    out += c;
   }
   return out;
 }
@@ -111,19 +99,18 @@ bool is_object(std::string_view words, ObjectAddress object, const od::Dictionar
 }
 
 std::string haystack(const drive::Topic& topic) {
-  auto out = topic.name;
-  for (const auto& name : topic.also) out += "\n" + name;
-  return folded(out + "\n" + topic.title + "\n" + topic.title_zh);
+  auto out = searchable({topic.name, topic.title, topic.title_zh});
+  for (const auto& name : topic.also) out += searchable({name});
+  return out;
 }
 
 std::string all_text(const drive::Topic& topic) {
-  auto out = haystack(topic);
-  for (const auto* text : {&topic.text, &topic.text_zh, &topic.note, &topic.note_zh}) out += "\n" + *text;
+  auto out = haystack(topic) + searchable({topic.text, topic.text_zh, topic.note, topic.note_zh});
   for (const auto& row : topic.rows) {
-    for (const auto& cell : row.cells) out += "\n" + cell;
-    out += "\n" + row.text + "\n" + row.text_zh;
+    for (const auto& cell : row.cells) out += searchable({cell});
+    out += searchable({row.text, row.text_zh});
   }
-  return folded(out);
+  return out;
 }
 
 }  // namespace
@@ -134,20 +121,22 @@ std::string_view name(Found found) {
   return kNames.at(static_cast<std::size_t>(found));
 }
 
-TopicQuery::TopicQuery(std::string_view words)
-    : whole_(trim(words)), subject_(trim(whole_.substr(0, whole_.find('=')))), key_(key_of(words)) {
-  auto text = with_numbers_apart(folded(words));
-  if (const auto sign = text.find('='); sign != std::string::npos) {
+TopicQuery::TopicQuery(std::string_view words, std::span<const drive::EverydayWords> everyday)
+    : everyday_(everyday),
+      whole_(trim(words)),
+      subject_(trim(whole_.substr(0, whole_.find('=')))),
+      key_(key_of(words)),
+      words_(words, everyday) {
+  if (const auto sign = whole_.find('='); sign != std::string::npos) {
     assigned_ = true;
-    counted_ = trim(std::string_view(text).substr(0, sign));
-    number_ = parse_signed(trim(std::string_view(text).substr(sign + 1)));
-    text[sign] = ' ';
+    counted_ = folded(subject_);
+    number_ = parse_signed(folded(std::string_view(whole_).substr(sign + 1)));
+    return;
   }
-  for (const auto word : split(std::string_view(text), ' '))
-    if (!word.empty()) words_.emplace_back(word);
-  if (assigned_ || words_.size() < 2) return;
-  number_ = parse_signed(words_.back());
-  for (std::size_t i = 0; i + 1 < words_.size(); ++i) append(counted_, words_[i], " ");
+  const auto& all = words_.all();
+  if (all.size() < 2) return;
+  number_ = parse_signed(all.back());
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) append(counted_, all[i], " ");
 }
 
 bool TopicQuery::names(std::string_view name) const { return !key_.empty() && key_of(name) == key_; }
@@ -157,8 +146,6 @@ bool TopicQuery::names_display(std::string_view shown) const {
   const bool telling = key.find_first_of("0123456789") != std::string::npos && key.front() >= 'a';
   return telling && key == display_key(whole_);
 }
-
-bool TopicQuery::mentions(std::string_view text) const { return is_in(folded(text)); }
 
 bool TopicQuery::names_topic(const drive::Topic& topic) const {
   return names(topic.name) ||
@@ -181,15 +168,16 @@ bool TopicQuery::names_value(const drive::Topic& topic, const od::Dictionary* di
 bool TopicQuery::is_counted(const drive::Topic& topic, std::size_t column, std::string_view cell,
                             std::size_t numbers) const {
   const auto& heading = topic.columns[column];
-  const auto& word = words_.back();
+  const auto& word = words_.all().back();
   if (heading == "step") return false;  // What the words count are no steps.
   if (is_quantity(cell, word)) return true;
   if (cell == word && is_telling(word)) return true;
   if (is_marked_hex(word) && is_marked_hex(cell)) return is_number(cell, word);
   const bool quantities = topic.kind == "cable" || topic.kind == "wiring";
   const bool called =
-      quantities || std::any_of(words_.begin(), words_.end() - 1,
-                                [&](const std::string& before) { return has_word(folded(heading), before); });
+      quantities || std::any_of(words_.all().begin(), words_.all().end() - 1, [&](const std::string& before) {
+        return has_word(searchable(heading), before);
+      });
   if (column != numbers && !(called && is_countable(heading))) return false;
   return is_number(cell, word) || (column == numbers && is_counted_by(cell, word));
 }
@@ -197,9 +185,9 @@ bool TopicQuery::is_counted(const drive::Topic& topic, std::size_t column, std::
 /// Rows with a cell that is all that was typed, or, of a topic that the words before name, the last word.
 std::vector<std::size_t> TopicQuery::rows_of(const drive::Topic& topic, bool counted) const {
   const bool telling = is_telling(key_);
-  const bool counts = counted && !assigned_ && words_.size() > 1;
-  const auto about = counts ? haystack(topic) + "\n" + topic.kind : std::string();
-  const bool named = counts && std::all_of(words_.begin(), words_.end() - 1,
+  const bool counts = counted && !assigned_ && words_.all().size() > 1;
+  const auto about = counts ? haystack(topic) + searchable(topic.kind) : std::string();
+  const bool named = counts && std::all_of(words_.all().begin(), words_.all().end() - 1,
                                            [&](const std::string& word) { return has_word(about, word); });
   if (!telling && !named) return {};
   const auto numbers = number_column(topic);
@@ -219,11 +207,6 @@ std::vector<std::size_t> TopicQuery::rows_of(const drive::Topic& topic, bool cou
   return out;
 }
 
-bool TopicQuery::is_in(std::string_view text) const {
-  return !words_.empty() && std::all_of(words_.begin(), words_.end(),
-                                        [&](const std::string& word) { return has_word(text, word); });
-}
-
 std::optional<TopicMatch> TopicQuery::match_name(const drive::Topic& topic) const {
   if (names_topic(topic)) return TopicMatch{Found::name, {}};
   if (auto rows = rows_of(topic, false); !rows.empty()) return TopicMatch{Found::row, std::move(rows)};
@@ -235,8 +218,8 @@ std::optional<TopicMatch> TopicQuery::match(const drive::Topic& topic,
   if (names_topic(topic)) return TopicMatch{Found::name, {}};
   if (names_value(topic, dictionary)) return TopicMatch{Found::value, {}};
   if (auto rows = rows_of(topic, true); !rows.empty()) return TopicMatch{Found::row, std::move(rows)};
-  if (is_in(haystack(topic)) || names(topic.kind)) return TopicMatch{Found::title, {}};
-  if (is_in(all_text(topic))) return TopicMatch{Found::text, {}};
+  if (words_.are_in(haystack(topic)) || names(topic.kind)) return TopicMatch{Found::title, {}};
+  if (words_.are_in(all_text(topic))) return TopicMatch{Found::text, {}};
   return std::nullopt;
 }
 

@@ -3,11 +3,15 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "drive/everyday_words.hpp"
 #include "drive/topics.hpp"
+#include "show/said_words.hpp"
+#include "show/words_in_text.hpp"
 
 namespace servoctl::show {
 
@@ -27,7 +31,11 @@ struct TopicMatch {
 /// blanks make no difference.
 class TopicQuery {
  public:
-  explicit TopicQuery(std::string_view words);
+  /// `everyday` is what people call things; it outlives the query.
+  explicit TopicQuery(std::string_view words, std::span<const drive::EverydayWords> everyday = {});
+
+  /// Other words, understood in the same way.
+  TopicQuery of(std::string_view words) const { return TopicQuery(words, everyday_); }
 
   const std::string& whole() const { return whole_; }  ///< As it was typed, but for blanks.
   /// Of an object and its value, the object as it was typed; else all that was typed.
@@ -37,8 +45,10 @@ class TopicQuery {
   bool names(std::string_view name) const;
   /// The same of what a panel shows, where people leave out marks and zeros: `AL9` and `al 09` are `AL.09`.
   bool names_display(std::string_view shown) const;
-  /// Whether all words stand in the text.
-  bool mentions(std::string_view text) const;
+  /// Whether all words stand in the texts, in any order, as they were typed or as people say it otherwise.
+  /// They are searchable().
+  bool mentions(std::string_view texts) const { return words_.are_in(texts); }
+  const drive::EverydayWords* thing() const { return words_.thing(); }  ///< See SaidWords.
 
   /// Why the topic is an answer, by the best reason; empty where it is none. `dictionary` knows the names of
   /// objects; null: only their indexes are understood.
@@ -52,12 +62,12 @@ class TopicQuery {
   bool is_counted(const drive::Topic& topic, std::size_t column, std::string_view cell,
                   std::size_t numbers) const;
   std::vector<std::size_t> rows_of(const drive::Topic& topic, bool counted) const;
-  bool is_in(std::string_view text) const;
 
+  std::span<const drive::EverydayWords> everyday_;
   std::string whole_;
   std::string subject_;
   std::string key_;
-  std::vector<std::string> words_;      ///< Folded; a number behind Chinese is a word of its own.
+  SaidWords words_;
   std::string counted_;                 ///< What is before the last word, or the `=`.
   std::optional<std::int64_t> number_;  ///< The last word, or what is behind the `=`.
   bool assigned_ = false;

@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "base/folded.hpp"
+
 namespace servoctl::show {
 namespace {
+
+constexpr char kApart = '\x1f';  ///< Stands in no text.
 
 /// Of a word in ASCII.
 bool is_word_sign(char c) { return (c >= 'a' && c <= 'z') || is_decimal_digit(c); }
@@ -32,6 +36,24 @@ bool is_whole_number(std::string_view text, std::size_t at, std::size_t end) {
 }  // namespace
 
 bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
+
+std::string searchable(std::string_view text) {
+  const auto is_chinese = [](char c) { return static_cast<unsigned char>(c) >= 0x80; };
+  auto out = folded(text);
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const bool beside = out[i] == ' ' && (is_chinese(out[i - 1]) || is_chinese(out[i + 1]));
+    if (!beside) out[size++] = out[i];
+  }
+  out.resize(size);
+  return out;
+}
+
+std::string searchable(std::initializer_list<std::string_view> texts) {
+  std::string out;
+  for (const auto text : texts) (out += searchable(text)) += kApart;
+  return out;
+}
 
 bool has_word(std::string_view text, std::string_view word) {
   if (word.empty()) return false;

@@ -16,7 +16,7 @@ constexpr std::string_view kModbusExample =
 
 /// Longer than the usual timeout of 500 ms, and shorter than twice that.
 constexpr Duration kLateAnswer = std::chrono::milliseconds(700);
-constexpr std::string_view kModbusLies[] = {"late", "twice", "short", "unconfirmed"};
+constexpr std::string_view kModbusLies[] = {"late", "twice", "short", "unconfirmed", "busy"};
 
 Result<void> add_modbus_lies(const CellSpec& spec, const CellSpec::Option& option, ModbusLies& lies) {
   const auto words = lies_of(spec, option, kModbusLies);
@@ -26,6 +26,7 @@ Result<void> add_modbus_lies(const CellSpec& spec, const CellSpec::Option& optio
     if (word == "twice") lies.twice = true;
     if (word == "short") lies.is_short = true;
     if (word == "unconfirmed") lies.unconfirmed = true;
+    if (word == "busy") lies.busy = true;
   }
   return {};
 }
@@ -75,7 +76,9 @@ std::optional<ModbusCell::Answer> ModbusCell::on_message(modbus::Framing framing
   std::optional<Answer> out;
   for (const auto& unit : units) {
     if (!to_all && unit->unit() != message.unit) continue;
-    auto pdu = unit->on_request(message.pdu, to_all, now);
+    const bool busy = lies.busy && answered % 3 != 2 && !to_all;
+    auto pdu = busy ? modbus::exception_answer(message.pdu.front(), modbus::Exception::device_busy)
+                    : unit->on_request(message.pdu, to_all, now);
     if (!pdu || out) continue;
     if (lies.unconfirmed && is_write(*pdu)) continue;
     if (lies.is_short) pdu->pop_back();

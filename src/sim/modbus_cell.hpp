@@ -22,6 +22,7 @@ struct ModbusLies {
   bool twice = false;        ///< `twice`: every answer comes twice.
   bool is_short = false;     ///< `short`: the last byte of the PDU is missing.
   bool unconfirmed = false;  ///< `unconfirmed`: writes are done and not answered.
+  bool busy = false;         ///< `busy`: two of three requests are refused with exception 06h.
 };
 
 /// Simulated drives on a Modbus line with all that belongs to them. Performs no I/O and reads no clock.

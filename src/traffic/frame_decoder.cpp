@@ -280,8 +280,12 @@ void FrameDecoder::end_sdo_fields(const canopen::SdoStep& step) {
 
 void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Target& target) {
   if (!step.object || !step.data) return leave_out({"value", "unit", "label", "bytes"});
-  const auto& data = *step.data;
-  const auto value = show::decode_value({*out_.node, target, {}, Bytes{}}, data);
+  const show::Reading reading{*out_.node, target, {}, Bytes{}};
+  // Some servers answer with four bytes for whatever is smaller, as canopen::SdoHabit says.
+  auto data = *step.data;
+  const auto size = show::size_of(reading);
+  if (size != 0 && size < 4 && data.size() == 4 && load_le(data) >> (size * 8) == 0) data.resize(size);
+  const auto value = show::decode_value(reading, data);
   out_.text += " = " + value.text;
   const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
   if (const auto* words = std::get_if<std::string>(&label.data())) out_.text += " " + *words;
@@ -290,7 +294,7 @@ void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Targ
   fields_.member("value", value.value);
   fields_.text_or_null("unit", value.unit);
   fields_.member("label", value.label);
-  fields_.member("bytes", to_hex(data));
+  fields_.member("bytes", to_hex(*step.data));
 }
 
 /// What controlword and statusword say; empty for every other object.

@@ -129,15 +129,15 @@ TEST_F(SdoLate, ALateAnswerIsPartOfTheMessageAboutSilence) {
   EXPECT_NE(end.error().hint.find("--timeout 2s"), std::string::npos) << end.error().hint;
 }
 
-TEST_F(SdoLate, AnAbortThatNamesNoObjectIsPartOfTheMessage) {
+TEST_F(SdoLate, AnAbortThatNamesAnotherObjectIsPartOfTheMessage) {
   client.start_upload(kStatus, now);
   play(client, now,
-       {"> 602#4041600000000000", "< 582#8000000000000206", "+ 500ms", "> 602#8041600000000405"});
+       {"> 602#4041600000000000", "< 582#8042600000000206", "+ 500ms", "> 602#8041600000000405"});
   const auto end = result();
   EXPECT_EQ(end.error().code, Errc::protocol);
   EXPECT_EQ(end.error().message,
             "node 2, object 0x6041:0: no answer within 500 ms; it aborted with 0x06020000 and named object "
-            "0x0000:0");
+            "0x6042:0");
 }
 
 TEST_F(SdoLate, AnAnswerForAnotherObjectIsPartOfTheMessage) {

@@ -95,6 +95,46 @@ TEST_F(ModbusNetworkTest, AnExceptionIsTheRefusalOfTheDrive) {
       "address: it has no such register, or it cannot be written");
 }
 
+/// Exception 06h: nothing of the request was done, and the unit wants to be asked again.
+TEST_F(ModbusNetworkTest, ABusyUnitIsAskedAgainUntilItAnswers) {
+  int left = 3;
+  script.answer = [&](const Bytes& request) {
+    const bool write = request[1] == 0x06;
+    const auto busy = message(request[0], write ? "86 06" : "83 06");
+    return std::vector{std::pair{Duration(5000), left-- > 0 ? busy
+                                                 : write    ? request
+                                                            : message(request[0], "03 02 00 C8")}};
+  };
+  EXPECT_EQ(session->upload(1, kSpeed), (Bytes{0xC8, 0x00}));
+  ASSERT_EQ(script.times.size(), 4U);
+  for (std::size_t i = 1; i < 4; ++i) EXPECT_GE(script.times[i] - script.times[i - 1], milliseconds(20));
+  left = 2;
+  EXPECT_TRUE(session->download(1, kSpeed, {0xC8, 0x00}));
+  EXPECT_EQ(script.sent.size(), 7U);
+}
+
+TEST_F(ModbusNetworkTest, AUnitThatStaysBusyIsGivenUpAfterTheTimeout) {
+  answer_with("86 06");
+  const auto begun = script.now;
+  const auto write = session->download(1, kSpeed, {0xC8, 0x00});
+  ASSERT_FALSE(write);
+  EXPECT_EQ(write.error().code, Errc::timeout);
+  EXPECT_NE(write.error().message.find("Modbus exception 06h, server device busy"), std::string::npos)
+      << write.error().message;
+  EXPECT_GE(script.sent.size(), 3U);
+  EXPECT_LE(script.now - begun, milliseconds(150));
+}
+
+TEST_F(ModbusNetworkTest, AMalformedAnswerIsShownWithItsBytes) {
+  answer_with("03 04 00 C8 00 00");
+  const auto read = session->upload(1, kSpeed);
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error().code, Errc::protocol);
+  EXPECT_EQ(read.error().message,
+            "node 1, object 0x2033:0: the answer to register 0033h has another length than was asked for: 03 "
+            "04 00 C8 00 00");
+}
+
 TEST_F(ModbusNetworkTest, OneRequestIsOnTheLineAtATime) {
   answer_with("03 02 00 01", milliseconds(40));
   std::vector<SdoRequest> requests;

@@ -52,6 +52,46 @@ TEST(TopicQuery, FindsNamesWhateverTheirCaseWidthAndBlanks) {
     EXPECT_EQ(found(words, inputs()), "name") << words;
 }
 
+std::vector<drive::EverydayWords> everyday() {
+  return {{"braking resistor", {"braking resistor", "brake resistor", "制动电阻", "再生电阻"}, false},
+          {"holding brake", {"brake", "抱闸"}, false},
+          {"vibration", {"vibrat", "oscillat", "振动", "共振"}, true}};
+}
+
+TEST(TopicQuery, FindsAThingByWhateverPeopleCallIt) {
+  const auto all = everyday();
+  const auto finds = [&](std::string_view typed, std::string_view text) {
+    return TopicQuery(typed, all).mentions(searchable(text));
+  };
+  EXPECT_TRUE(finds("制动电阻", "Braking resistor: internal or external"));
+  EXPECT_TRUE(finds("brake resistor", "外置再生电阻阻值"));
+  EXPECT_TRUE(finds("resistor brake", "外置再生电阻阻值"));
+  EXPECT_TRUE(finds("external 制动电阻", "External braking resistor value"));
+  EXPECT_FALSE(finds("internal 制动电阻", "External braking resistor value"));
+  EXPECT_TRUE(finds("oscillations", "The load vibrates."));
+  EXPECT_TRUE(finds("振动抑制", "Load oscillation 抑制"));
+  EXPECT_FALSE(finds("制动电阻", "Terminating resistor"));
+  EXPECT_FALSE(finds("brake", "Braking torque"));
+}
+
+TEST(TopicQuery, KnowsWhenAllThatWasTypedNamesOneThing) {
+  const auto all = everyday();
+  ASSERT_NE(TopicQuery("共振", all).thing(), nullptr);
+  EXPECT_TRUE(TopicQuery("共振", all).thing()->absent);
+  EXPECT_EQ(TopicQuery("brake resistor", all).thing()->name, "braking resistor");
+  EXPECT_EQ(TopicQuery("brake vibration", all).thing(), nullptr);
+  EXPECT_EQ(TopicQuery("vibration level", all).thing(), nullptr);
+  EXPECT_EQ(TopicQuery("notch", all).thing(), nullptr);
+}
+
+TEST(TopicQuery, FoldsTheBlanksBesideChinese) {
+  for (const auto* typed : {"S曲线", "S 曲线", "s 曲 线"})
+    for (const auto* text : {"S曲线时间常数", "S 曲线 时间常数"})
+      EXPECT_TRUE(TopicQuery(typed).mentions(searchable(text))) << typed << " in " << text;
+  EXPECT_EQ(searchable({"增益 1", "gain"}), searchable({"增益1", "GAIN"}));
+  EXPECT_NE(searchable({"a", "b"}), searchable("a b"));
+}
+
 TEST(TopicQuery, ReadsADisplayWithoutItsMarksAndZeros) {
   for (const auto* typed : {"AL.09", "AL09", "al9", "AL 9", "al-09"})
     EXPECT_TRUE(TopicQuery(typed).names_display("AL.09")) << typed;
