@@ -70,7 +70,9 @@ void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json);
 class PdoBook {
  public:
   /// `profile` may be null; it outlives the book.
-  PdoBook(const drive::Profile* profile, bool chinese) : profile_(profile), chinese_(chinese) {}
+  /// `standard`: as Desk::standard.
+  PdoBook(const drive::Profile* profile, bool chinese, const drive::Profile* standard = nullptr)
+      : profile_(profile), names_(profile != nullptr ? profile : standard), chinese_(chinese) {}
 
   /// What a node says its PDO parameters are.
   void set(std::uint8_t node, session::Values values);
@@ -94,6 +96,7 @@ class PdoBook {
   void index();
 
   const drive::Profile* profile_;
+  const drive::Profile* names_;
   bool chinese_;
   std::map<std::uint8_t, Node> nodes_;
   std::array<const PdoView*, 0x800> by_id_{};

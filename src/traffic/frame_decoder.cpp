@@ -225,7 +225,8 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   out_.service = "sdo";
   out_.node = node;
   drive::Target target;
-  if (step.object) target = drive::target_at(options_.profile, *step.object);
+  const auto* names = options_.profile != nullptr ? options_.profile : options_.standard;
+  if (step.object) target = drive::target_at(names, *step.object);
   out_.text = step_text(step, step.object ? name_of(target) : std::string(word("of a transfer begun before")),
                         step.kind == Step::abort ? std::string(word(abort_words_of(step))) : std::string(),
                         options_.chinese);
@@ -274,7 +275,12 @@ void FrameDecoder::end_sdo_fields(const canopen::SdoStep& step) {
 void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Target& target) {
   if (!step.object || !step.data) return leave_out({"value", "unit", "label", "bytes"});
   const auto& data = *step.data;
-  const auto value = show::decode_value({*out_.node, target, {}, Bytes{}}, data);
+  show::Reading reading{*out_.node, target, {}, Bytes{}};
+  // A unit that the data only assume is not the drive's.
+  static const session::DriveUnits kNone;
+  const bool assumes = options_.profile == nullptr || options_.profile->is_generic();
+  if (assumes && target.entry != nullptr) reading.units = &kNone;
+  const auto value = show::decode_value(reading, data);
   out_.text += " = " + value.text;
   const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
   if (const auto* words = std::get_if<std::string>(&label.data())) out_.text += " " + *words;
