@@ -277,7 +277,6 @@ Result<void> check_address(Context& context, const Arguments& arguments) {
 constexpr Example kAddressExamples[] = {
     {"address 5 -n 1 -d gsd600", "node 1 becomes node 5"},
     {"address --bitrate 500k -n all -d gsd600", "every drive of the bus, and its interface"},
-    {"address 5 --object 200C:2 -n 1 -d drive.eds", "a drive of which only the EDS is known"},
     {"address --plan nodes.csv -d gsd600", "renumber several by a table with the columns node,new"},
 };
 

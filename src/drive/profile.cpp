@@ -198,8 +198,10 @@ std::string canonical_id(std::string_view id) {
 }
 
 void Profile::build_index() {
-  if (parameters.empty()) made_of_dictionary = true;
-  if (made_of_dictionary) parameters = maker_parameters(dictionary);
+  if (parameters.empty() || made_of_dictionary) {
+    parameters = maker_parameters(dictionary);
+    made_of_dictionary = !parameters.empty();
+  }
   // The lines of a data sheet are not those of a manual.
   if (made_of_dictionary && of_file)
     for (auto& parameter : parameters) parameter.line = 0;
