@@ -14,6 +14,7 @@
 #include "drive/bitrate.hpp"
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
+#include "settings/address_object.hpp"
 #include "settings/address_plan_run.hpp"
 #include "settings/address_table.hpp"
 #include "settings/bitrate_switch.hpp"
@@ -41,6 +42,9 @@ constexpr Parameter kAddressParameters[] = {
      .help = "how long to wait for a drive that is to be switched off and on",
      .kind = Kind::duration},
     kUnlockOption,
+    {.name = "--object",
+     .help = "200C:2: the object of the node-ID, if the data of the family name none",
+     .kind = Kind::object},
     {.name = "--resume", .help = "resume an interrupted plan", .kind = Kind::flag},
 };
 
@@ -74,11 +78,17 @@ Result<void> check_words(const Context& context, const Arguments& arguments) {
   if (arguments.has("--plan")) {
     if (arguments.has("new") || arguments.has("--bitrate"))
       return fail(Errc::usage, "--plan names all addresses itself", "leave the node-ID and --bitrate out");
+    if (arguments.has("--object"))
+      return fail(Errc::usage, "--object is for one drive, not for --plan",
+                  "`address NEW --object OBJECT -n NODE` for each");
     return {};
   }
   if (arguments.has("--resume")) return fail(Errc::usage, "--resume resumes a plan", "add --plan FILE.csv");
   if (!arguments.has("new") && !arguments.has("--bitrate"))
     return fail(Errc::usage, "there is nothing to change", "`address 5`, or --bitrate 500k, or --plan FILE");
+  if (arguments.has("--object") && !arguments.has("new"))
+    return fail(Errc::usage, "--object names the object of the node-ID, and no new node-ID is given",
+                "`address 5 --object 200C:2`; `write` writes a bitrate by its code");
   if (context.nodes.empty())
     return fail(Errc::usage, "'address' needs a node", "add -n 1; `scan` shows who is there");
   if (arguments.has("new") && (context.nodes.size() != 1 || context.nodes.front() == 0))
@@ -213,11 +223,8 @@ Result<void> name_all(Context& context) {
   return context.hold_family(context.nodes, context.profile, true);
 }
 
-Result<Value> run_address(Context& context, const Arguments& arguments) {
-  const auto options = address_options(arguments);
-  if (!options) return fail(options.error());
-  if (const auto words = check_words(context, arguments); !words) return fail(words.error());
-  if (arguments.has("--plan")) return run_plan(context, arguments, *options);
+Result<Value> run_change(Context& context, const Arguments& arguments,
+                         const settings::AddressOptions& options) {
   auto wish = address_wish(arguments);
   if (!wish) return fail(wish.error());
   if (wish->node && !wish->bitrate) wish->bus_bitrate = session::bitrate_of(context.session->url());
@@ -230,11 +237,11 @@ Result<Value> run_address(Context& context, const Arguments& arguments) {
     changes.push_back(std::move(*change));
   }
   if (const auto free = settings::refuse_taken(context, context.free_nodes); !free) return fail(free.error());
-  auto follower = follower_of(context, changes, wish->bitrate, *options);
+  auto follower = follower_of(context, changes, wish->bitrate, options);
   if (!follower) return fail(follower.error());
   if (context.dry_run) {
     if (follower->follows()) context.notices.push_back("then " + settings::switch_commands(*follower));
-    return settings::planned_address(context, changes, options->unlock);
+    return settings::planned_address(context, changes, options.unlock);
   }
   const bool idle = std::ranges::all_of(changes, &AddressChange::idle) && !follower->follows();
   auto agreed = idle ? Result<void>() : context.confirm(question_address(context, changes, *follower));
@@ -242,11 +249,27 @@ Result<Value> run_address(Context& context, const Arguments& arguments) {
   for (auto change = changes.begin(); agreed && change != changes.end(); ++change)
     agreed = settings::refuse_energised(*context.session, change->node, "its address");
   if (!agreed) return fail(agreed.error());
-  return change_addresses(context, changes, *options, *follower);
+  return change_addresses(context, changes, options, *follower);
+}
+
+Result<Value> run_address(Context& context, const Arguments& arguments) {
+  const auto options = address_options(arguments);
+  if (!options) return fail(options.error());
+  if (const auto words = check_words(context, arguments); !words) return fail(words.error());
+  if (arguments.has("--plan")) return run_plan(context, arguments, *options);
+  if (!arguments.has("--object")) return run_change(context, arguments, *options);
+  const auto own = settings::with_address_object(*context.profile, arguments.text("--object"));
+  if (!own) return fail(own.error());
+  if (const auto right = settings::check_address_object(context, *own); !right) return fail(right.error());
+  const settings::FamilyScope scope(context, &*own);
+  return run_change(context, arguments, *options);
 }
 
 Result<void> check_address(Context& context, const Arguments& arguments) {
   if (const auto words = check_words(context, arguments); !words) return words;
+  if (arguments.has("--object"))
+    if (const auto own = settings::with_address_object(*context.profile, arguments.text("--object")); !own)
+      return fail(own.error());
   const auto wish = address_wish(arguments);
   return wish ? Result<void>() : fail(wish.error());
 }
@@ -276,6 +299,8 @@ const Command kAddress{
         "interface changes when all are off. It is left alone, and what to do by hand is listed, where it has no "
         "bitrate that can be set (an slcan adapter is named with its new one), where the right CAP_NET_ADMIN is "
         "missing, or where somebody on the bus would be left behind. --dry-run shows the commands.\n\n"
+        "For a drive whose data name no parameter of the node-ID (-d FILE.eds, cia402), --object names the object "
+        "that holds it. It is refused if it does not hold the present node-ID, and stored by 1010h.\n\n"
         "--plan FILE.csv renumbers several (columns node,new; family, serial and "
         "bitrate where wanted; without a family it is that of -d, else that of the axis in the cabinet file): all are looked at first, and each moves when its new node-ID is free; "
         "drives that exchange theirs go through a free one. When all have their bitrate, the interface goes "

@@ -33,7 +33,7 @@ Result<motion::Home> parse_home(const Arguments& arguments) {
 Result<void> check_home(Context& context, const Arguments& arguments) {
   if (const auto home = parse_home(arguments); !home) return fail(home.error());
   using Least = motion::WrittenQuantity::Least;
-  return check_motion_words(context, arguments,
+  return check_motion_words(context, arguments, drive::Use::home,
                             {{.word = "method", .object = objects::kHomingMethod, .least = Least::any},
                              {.word = "--speed", .object = objects::kHomingSpeedSwitch},
                              {.word = "--search", .object = objects::kHomingSpeedZero},

@@ -104,7 +104,7 @@ Result<report::Value> run_jog(Context& context, const Arguments& arguments) {
 
 Result<void> check_jog(Context& context, const Arguments& arguments) {
   if (const auto jog = parse_jog(arguments); !jog) return fail(jog.error());
-  return check_motion_words(context, arguments, {written_speed("speed")});
+  return check_motion_words(context, arguments, drive::Use::jog, {written_speed("speed")});
 }
 
 constexpr Example kJogExamples[] = {

@@ -59,6 +59,15 @@ Result<void> check_change(Context& context, const WantedMode& wanted) {
                           "`disable` it first"));
 }
 
+/// What such a mode does, no standard and no data say.
+Result<void> confirm_maker_mode(Context& context, std::int8_t mode) {
+  if (!motion::is_unknown_maker_mode(*context.profile, mode)) return {};
+  return context.confirm(formatted(
+      "Mode {} is a manufacturer-specific mode: servoctl does not know what the drive does in it, and moves "
+      "nothing. Write it to 0x6060?",
+      mode));
+}
+
 Value planned_mode(Context& context, std::int8_t mode) {
   std::vector<session::PlannedMessage> messages;
   for (const auto node : context.nodes) {
@@ -78,6 +87,8 @@ Result<Value> run_mode(Context& context, const Arguments& arguments) {
     wanted = *mode;
   }
   if (wanted && context.dry_run) return planned_mode(context, *wanted);
+  if (wanted)
+    if (const auto answer = confirm_maker_mode(context, *wanted); !answer) return fail(answer.error());
   report::Table table;
   table.columns = {{"node"},
                    {"text", "mode", Show::text},
@@ -113,6 +124,7 @@ Result<void> check_mode_word(Context& context, const Arguments& arguments) {
 constexpr Example kModeExamples[] = {
     {"mode -n 1 -d gsd600", "the present mode"},
     {"mode pv -n 1 -d gsd600", "profile velocity; only while de-energised"},
+    {"mode -3 -n 1 -d cia402", "a mode of the manufacturer's own, after a question"},
 };
 
 }  // namespace
@@ -124,7 +136,8 @@ const Command kMode{
     .details =
         "Names are the family's own: `mode pv`, `mode \"Profile velocity\"`, `mode 3`. Refused if the family "
         "or the drive (6502h) does not support the mode, and while the drive is energised. Waits until 6061h "
-        "shows it.",
+        "shows it. A manufacturer-specific mode (below 0) of a drive without data of its own (-d cia402, -d "
+        "FILE) is written after a question.",
     .parameters = kModeParameters,
     .examples = kModeExamples,
     .needs = Needs::node | Needs::dictionary,

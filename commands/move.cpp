@@ -34,7 +34,7 @@ Result<void> check_move(Context& context, const Arguments& arguments) {
   const auto* profile = context.profile;
   const auto speed = profile == nullptr ? Result<drive::Target>(drive::Target{})
                                         : drive::resolve(profile, profile->rules.motion.position_speed);
-  return check_motion_words(context, arguments,
+  return check_motion_words(context, arguments, drive::Use::move,
                             {{.word = "target",
                               .object = objects::kTargetPosition,
                               .kind = motion::MotionUnits::Kind::way,

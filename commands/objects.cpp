@@ -70,8 +70,8 @@ Result<report::Value> run_objects(Context& context, const Arguments& arguments) 
 
 constexpr Example kObjectsExamples[] = {
     {"objects '0x60*' -d gsd600", "those from 6000h to 60FFh"},
+    {"objects 0x6041", "a standard object; without -d"},
     {"objects homing -d da200", "those with this word in the name"},
-    {"objects 0x6060 -d sv2", "one of them, with the meanings of its values"},
 };
 
 }  // namespace
@@ -81,7 +81,7 @@ const Command kObjects{
     .path = "objects",
     .summary = "List the object dictionary of a drive family",
     .details =
-        "Works without a bus. The pattern is part of a name in English or Chinese, an index, or an index "
+        "Works without a bus; without -d it lists the objects of the standards (CiA 301, CiA 402). The pattern is part of a name in English or Chinese, an index, or an index "
         "with `*`; for a single index the meanings of its values are listed too. For a DCF, value and "
         "denotation are those of each entry (ParameterValue, Denotation). `-d FILE.xml` lists what the ESI of "
         "an EtherCAT device describes, `-d FILE.xml#2` the second device of several; with a node on EtherCAT, -d online or nothing "
@@ -91,6 +91,7 @@ const Command kObjects{
     .examples = kObjectsExamples,
     .needs = Needs::dictionary,
     .effect = Effect::none,
+    .standard_without = true,
     .run = run_objects,
 };
 

@@ -12,7 +12,7 @@ constexpr Parameter kParamExplainParameters[] = {
 };
 
 Result<report::Value> run_param_explain(Context& context, const Arguments& arguments) {
-  const auto parameter = drive::resolve_parameter(*context.profile, arguments.text("id"));
+  const auto parameter = drive::resolve_parameter(*context.profile, arguments.text("id"), drive::Match::part);
   if (!parameter) return fail(parameter.error());
   return report::Value(show::parameter_record(**parameter, context.chinese));
 }

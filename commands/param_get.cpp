@@ -23,7 +23,7 @@ Result<std::vector<drive::Target>> wanted_parameters(const drive::Profile& profi
   std::vector<drive::Target> out;
   for (const auto& word : words) {
     if (word.find('*') == std::string::npos) {
-      const auto target = drive::resolve_panel(profile, word);
+      const auto target = drive::resolve_panel(profile, word, drive::Match::part);
       if (!target) return fail(target.error());
       if (!od::readable(drive::meaning(*target, 0).access))
         return fail(Errc::usage, formatted("{} is write-only", target->in_sentence()),

@@ -24,7 +24,7 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
   std::vector<std::string> groups;
   const bool in_chinese = report::has_chinese(pattern);  // The catalogue is read for these alone.
   for (const auto& parameter : context.profile->parameters) {
-    if (std::find(groups.begin(), groups.end(), parameter.group) == groups.end())
+    if (!parameter.group.empty() && std::find(groups.begin(), groups.end(), parameter.group) == groups.end())
       groups.push_back(parameter.group);
     if (pattern.empty() || equals_nocase(parameter.group, pattern) ||
         (in_chinese && report::chinese_word(parameter.group) == pattern) ||
@@ -37,7 +37,9 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
       for (auto& group : groups) group = report::chinese_word(group);
     return fail(Errc::negative,
                 formatted("no parameter of {} matches '{}'", context.profile->family, pattern),
-                formatted("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
+                groups.empty()
+                    ? std::string("`param search WORD` looks for words in names")
+                    : formatted("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
   }
   return report::Value(show::parameter_table(found, context.chinese));
 }

@@ -12,6 +12,7 @@
 #include "show/alarm_question.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
+#include "show/standard_names.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -33,7 +34,7 @@ constexpr Parameter kReadParameters[] = {
 };
 
 Result<drive::Target> readable_target(const Context& context, std::uint8_t node, const std::string& word) {
-  auto target = drive::resolve(context.profile, word);
+  auto target = drive::resolve(context.profile, word, drive::Match::part);
   if (target && !od::readable(drive::meaning(*target, node).access))
     return fail(Errc::usage, "'" + word + "' is write-only", "it can be written, not read");
   return target;
@@ -110,7 +111,7 @@ Result<report::Value> run_to_file(Context& context, const Arguments& arguments) 
   if (arguments.all("object").size() != 1 || context.nodes.size() != 1)
     return fail(Errc::usage, "--to takes one object of one node",
                 "use a separate command and file for each object and node");
-  const auto target = drive::resolve(context.profile, arguments.text("object"));
+  const auto target = drive::resolve(context.profile, arguments.text("object"), drive::Match::part);
   if (!target) return fail(target.error());
   if (const auto agreed = show::confirm_unlisted(context, context.nodes.front(), std::span(&*target, 1));
       !agreed)
@@ -125,6 +126,7 @@ Result<report::Value> run_read(Context& context, const Arguments& arguments) {
   if (!type) return fail(type.error());
   std::vector<show::Reading> readings;
   std::vector<session::SdoRequest> requests;
+  show::StandardNames names(context);
   for (const auto node : context.nodes) {
     for (const auto& word : arguments.all("object")) {
       const auto targets = targets_of(context, node, word);
@@ -132,7 +134,8 @@ Result<report::Value> run_read(Context& context, const Arguments& arguments) {
       if (const auto agreed = show::confirm_unlisted(context, node, *targets); !agreed)
         return fail(agreed.error());
       const bool many = is_pattern(word) || targets->size() > 1;
-      for (const auto& target : *targets) {
+      for (const auto& found : *targets) {
+        const auto target = names.named(node, found);
         readings.push_back({.node = node, .target = target, .type = *type, .one_of_many = many});
         const auto fixed_size = show::size_of(readings.back());
         const bool large = drive::meaning(target, node).type == od::DataType::domain;

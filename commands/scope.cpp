@@ -169,7 +169,7 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
 /// What the dictionary says is refused before anything is sent.
 Result<void> check_names(const Context& context, std::span<const std::string> names) {
   for (const auto& name : names) {
-    const auto target = drive::resolve(context.profile, name);
+    const auto target = drive::resolve(context.profile, name, drive::Match::part);
     if (!target) return fail(target.error());
     if (const auto number = traffic::check_number({context.nodes.front(), *target, name}); !number)
       return number;

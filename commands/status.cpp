@@ -176,8 +176,21 @@ List axis_records(std::span<const motion::OtherAxis> axes) {
   return out;
 }
 
+bool has_no_statusword(std::span<const Result<Bytes>> answers) {
+  return !answers[0] && answers[0].error().code == Errc::sdo_abort;
+}
+
+void tell_axes(Context& context, std::uint8_t node, std::span<const motion::OtherAxis> others,
+               bool has_first) {
+  if (!others.empty())
+    context.notices.push_back(
+        formatted("node {}: {}", node, motion::axes_text({others.begin(), others.end()}, has_first)));
+  else if (!has_first)
+    context.notices.push_back(formatted("node {} has no statusword: it is not a CiA 402 drive", node));
+}
+
 Record status_record(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers,
-                     bool restarted) {
+                     bool restarted, std::span<const motion::OtherAxis> others) {
   Record out{{"node", node}};
   if (const auto* ring = context.session->ethercat())
     add_al_state(out, *ring, node);
@@ -186,10 +199,7 @@ Record status_record(Context& context, std::uint8_t node, std::span<const Result
   add_drive_state(out, context, session::number_in(answers[0]), session::number_in(answers[1]));
   add_mode_and_fault(out, context, answers);
   add_owed(context, node, restarted, out);
-  const auto others = motion::other_axes(*context.session, context.profile, node);
-  if (others.empty()) return out;
-  context.notices.push_back(formatted("node {}: {}", node, motion::axes_text(others)));
-  out.push_back({"other_axes", axis_records(others), Show::json});
+  if (!others.empty()) out.push_back({"other_axes", axis_records(others), Show::json});
   return out;
 }
 
@@ -222,8 +232,10 @@ report::Table overview(const Context& context) {
   return table;
 }
 
-List overview_row(const Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers) {
+List overview_row(const Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers,
+                  bool has_others) {
   Value state;
+  if (has_others && has_no_statusword(answers)) state = "no axis 1";
   if (const auto word = session::number_in(answers[0])) {
     const auto decoded = drive::decode_state(static_cast<std::uint16_t>(*word));
     state = context.chinese ? drive::name_zh(decoded) : drive::name(decoded);
@@ -246,16 +258,16 @@ Result<report::Value> run_status(Context& context, const Arguments& arguments) {
   auto out = overview(context);
   for (std::size_t i = 0; i < context.nodes.size(); ++i) {
     const auto mine = std::span(answers).subspan(i * kCount, kCount);
-    const bool refused = !mine[0] && mine[0].error().code == Errc::sdo_abort;
-    if (refused)
-      context.notices.push_back(
-          formatted("node {} has no statusword: it is not a CiA 402 drive", context.nodes[i]));
+    const bool refused = has_no_statusword(mine);
     if (!mine[0] && !refused) {
       context.errors.push_back(mine[0].error());
       continue;
     }
-    out.documents.emplace_back(status_record(context, context.nodes[i], mine, *restarted));
-    out.rows.push_back(overview_row(context, context.nodes[i], mine));
+    const auto node = context.nodes[i];
+    const auto others = motion::other_axes(*context.session, context.profile, node);
+    tell_axes(context, node, others, !refused);
+    out.documents.emplace_back(status_record(context, node, mine, *restarted, others));
+    out.rows.push_back(overview_row(context, node, mine, !others.empty()));
   }
   out.json_only = out.rows.empty();
   if (arguments.has("--long")) return report::Value(std::move(out.documents));

@@ -145,7 +145,7 @@ Result<void> check_test_all(Context& context, const Arguments& arguments) {
   if (const auto fits = check_left_out(arguments); !fits) return fits;
   if (const auto jog = parse_jog_test(arguments, arguments.text("speed")); !jog) return fail(jog.error());
   if (const auto home = parse_home_test(arguments, {}); !home) return fail(home.error());
-  return check_motion_words(context, arguments, {written_speed("speed")});
+  return check_motion_words(context, arguments, drive::Use::jog, {written_speed("speed")});
 }
 
 Result<report::Value> run_test_all(Context& context, const Arguments& arguments) {

@@ -36,7 +36,7 @@ Result<void> check_test_home(Context& context, const Arguments& arguments) {
   if (const auto test = parse_home_test(arguments, arguments.text("method")); !test)
     return fail(test.error());
   return check_motion_words(
-      context, arguments,
+      context, arguments, drive::Use::home,
       {{.word = "method", .object = objects::kHomingMethod, .least = motion::WrittenQuantity::Least::any}});
 }
 

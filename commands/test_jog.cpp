@@ -38,7 +38,7 @@ Result<report::Value> run_test_jog(Context& context, const Arguments& arguments)
 
 Result<void> check_test_jog(Context& context, const Arguments& arguments) {
   if (const auto test = parse_jog_test(arguments, arguments.text("speed")); !test) return fail(test.error());
-  return check_motion_words(context, arguments, {written_speed("speed")});
+  return check_motion_words(context, arguments, drive::Use::jog, {written_speed("speed")});
 }
 
 constexpr Example kTestJogExamples[] = {

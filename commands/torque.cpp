@@ -28,7 +28,7 @@ Result<motion::Torque> parse_torque(const Arguments& arguments) {
 
 Result<void> check_torque_words(Context& context, const Arguments& arguments) {
   if (const auto torque = parse_torque(arguments); !torque) return fail(torque.error());
-  return check_motion_words(context, arguments,
+  return check_motion_words(context, arguments, drive::Use::torque,
                             {{.word = "torque",
                               .object = objects::kTargetTorque,
                               .kind = motion::MotionUnits::Kind::way,

@@ -249,7 +249,7 @@ Result<void> check_units_learn(Context& context, const Arguments& arguments) {
   if (const auto rpm = learning_speed(arguments); !rpm) return fail(rpm.error());
   if (const auto length = length_of(arguments); !length) return fail(length.error());
   if (const auto nameplate = nameplate_of(arguments); !nameplate) return fail(nameplate.error());
-  return check_motion_words(context, arguments, {});
+  return check_motion_words(context, arguments, drive::Use::jog, {});
 }
 
 constexpr Example kUnitsLearnExamples[] = {

@@ -154,6 +154,7 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
       (on_bus && names_objects(command, arguments)))
     if (const auto ready = prepare_profile(run, command.effect_with(arguments) > Effect::reads); !ready)
       return ready;
+  find_standard_names(run);
   if (!on_bus) return name_nodes(run);
   if (!run.settings.nodes.empty())
     if (const auto nodes = parse_nodes(run.settings.nodes); !nodes) return fail(nodes.error());
@@ -174,6 +175,16 @@ Result<void> Shell::prepare(Run& run, const command::Arguments& arguments) {
     return held;
   const bool changes = command.effect_with(arguments) >= Effect::writes && !command.way_out;
   return changes ? hold_serials(run) : Result<void>();
+}
+
+/// Where no family is named, standard objects still have names.
+void Shell::find_standard_names(Run& run) {
+  const auto& words = run.command->parameters;
+  const bool shows_objects = std::any_of(words.begin(), words.end(), [](const command::Parameter& word) {
+    return word.kind == command::Kind::object;
+  });
+  if (run.context.profile != nullptr || !shows_objects) return;
+  run.context.standard = profile(std::string(drive::kGenericFamily)).value_or(nullptr);
 }
 
 /// A command without a bus takes the nodes as they are written.

@@ -238,6 +238,8 @@ class Shell {
   std::vector<std::string> take_written_to_both(session::Session& session);
   /// The same for the last of several lines, before the bus is closed.
   void hear_last_line();
+  void find_standard_names(Run& run);
+  static Result<void> take_standard(Run& run, const Error& without);
   static Result<void> name_nodes(Run& run);
   Result<void> find_family(Run& run, bool changes);
   const FoundFamily* taken_for() const;

@@ -53,6 +53,16 @@ Result<void> Shell::prepare_families(Run& run) {
   return {};
 }
 
+/// Where nothing says which family it is, some commands are about the objects of the standards.
+Result<void> Shell::take_standard(Run& run, const Error& without) {
+  if (!run.command->standard_without || without.code != Errc::usage) return fail(without);
+  run.settings.drive = drive::kGenericFamily;
+  run.family_found = run.family_guessed = true;
+  run.context.notices.emplace_back(
+      "no -d: these are the objects of the standards (CiA 301, CiA 402), of which a drive has some");
+  return {};
+}
+
 Result<void> Shell::prepare_profile(Run& run, bool changes) {
   if (names_nodes(run.settings.drive)) {
     if (run.command->family_by_node) return prepare_families(run);
@@ -65,7 +75,8 @@ Result<void> Shell::prepare_profile(Run& run, bool changes) {
     return asked;
   }
   if (run.settings.drive.empty())
-    if (const auto found = find_family(run, changes); !found) return found;
+    if (const auto found = find_family(run, changes); !found)
+      if (const auto standard = take_standard(run, found.error()); !standard) return standard;
   auto loaded = profile(run.settings.drive);
   if (!loaded) loaded = device_of_node(run, loaded.error());
   if (!loaded) return fail(loaded.error());

@@ -5,6 +5,7 @@
 #include "base/text.hpp"
 #include "canopen/cob_id.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/motion_needs.hpp"
 
 namespace servoctl::command {
 namespace {
@@ -84,11 +85,12 @@ motion::WrittenQuantity written_speed(std::string_view word) {
           .least = motion::WrittenQuantity::Least::not_zero};
 }
 
-Result<void> check_motion_words(const Context& context, const Arguments& arguments,
+Result<void> check_motion_words(const Context& context, const Arguments& arguments, drive::Use use,
                                 std::initializer_list<motion::WrittenQuantity> own) {
   auto options = motion_options(context, arguments);
   if (!options) return fail(options.error());
   if (context.profile == nullptr || context.nodes.empty()) return {};
+  if (const auto mode = motion::mode_for(*context.profile, use); !mode) return fail(mode.error());
   // All may be one in the end.
   const auto node = context.nodes.front();
   if (node != 0)

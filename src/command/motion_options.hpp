@@ -63,9 +63,10 @@ Result<motion::MotionRequest> motion_request(const Context& context, const Argum
 /// The speed of a jog, whose sign is the direction, for check_motion_words().
 motion::WrittenQuantity written_speed(std::string_view word);
 
-/// For Command::check of a motion: what is wrong with the options above, and with quantities of the command's
-/// own (whose text is filled in here). Without a family nothing can be said.
-Result<void> check_motion_words(const Context& context, const Arguments& arguments,
+/// For Command::check of a motion: what its drive lacks for it by its data, what is wrong with the options
+/// above, and with quantities of the command's own (whose text is filled in here). Without a family nothing
+/// can be said.
+Result<void> check_motion_words(const Context& context, const Arguments& arguments, drive::Use use,
                                 std::initializer_list<motion::WrittenQuantity> own);
 
 }  // namespace servoctl::command

@@ -2,63 +2,24 @@
 
 #include <algorithm>
 
-#include "base/folded.hpp"
 #include "base/format.hpp"
 #include "base/text.hpp"
+#include "drive/maker_parameters.hpp"
+#include "drive/name_key.hpp"
+#include "drive/named.hpp"
 
 namespace servoctl::drive {
 namespace {
 
-bool is_plain(const od::Object& object) {
-  return object.entries.size() == 1 && object.entries.front().address.sub == 0;
-}
-
-/// Entries of `object` that `part` names: exactly, or as a piece of one name.
-std::vector<const od::Entry*> entries_named(const od::Object& object, std::string_view part) {
-  std::vector<const od::Entry*> pieces;
-  for (const auto& entry : object.entries) {
-    const auto name = od::identifier(entry.name);
-    if (name == part) return {&entry};
-    if (entry.address.sub != 0 && !part.empty() && name.find(part) != std::string::npos)
-      pieces.push_back(&entry);
-  }
-  return pieces;
-}
-
-/// Whether it can be an English name: od::identifier() leaves out all else, and would find another object.
+/// Whether it can be an English name, which is near another one by its letters.
 bool is_ascii(std::string_view text) {
   return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
-/// What the names for Chinese readers are compared by; some of them have no Chinese in them (`RPDO1 COB-ID`).
-std::string chinese_key(std::string_view text) {
-  auto out = folded(text);
-  std::erase(out, ' ');
-  return out;
-}
-
-/// What is called so in part, or a part of what was written, as a question; empty where nothing is.
-std::string near_in_chinese(const Profile& profile, std::string_view text, bool objects) {
-  constexpr std::size_t kMost = 3;
-  const auto wanted = chinese_key(text);
-  std::vector<std::string> near;
-  const auto look_at = [&](const std::string& name) {
-    const auto key = chinese_key(name);
-    const bool is_near = !key.empty() && (key.find(wanted) != std::string::npos || wanted.starts_with(key));
-    if (is_near && near.size() < kMost && std::find(near.begin(), near.end(), name) == near.end())
-      near.push_back(name);
-  };
-  if (wanted.empty()) return {};
-  for (const auto& parameter : profile.parameters) look_at(parameter.name_zh);
-  if (objects)
-    for (const auto& object : profile.dictionary.objects())
-      for (const auto& entry : object.entries) look_at(entry.name_zh);
-  return near.empty() ? std::string() : formatted("did you mean {}?", one_of(near));
-}
-
 tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
-  const auto known = names(profile);
-  auto hint = is_ascii(text) ? did_you_mean(lower(text), known) : near_in_chinese(profile, text, true);
+  auto hint = near_names(profile, text, true);
+  if (hint.empty() && is_ascii(text)) hint = did_you_mean(lower(text), names(profile));
+  if (hint.empty()) hint = near_words(profile, text);
   if (hint.empty())
     hint = profile.parameters.empty()
                ? "`objects PATTERN` finds names; an index is written 0x6041 or 6041h"
@@ -75,80 +36,9 @@ tl::unexpected<Error> ambiguous(std::string_view text, const std::vector<std::st
               "write " + one_of(shown) + (shown.size() < meanings.size() ? ", …" : ""));
 }
 
-/// Objects and entries by name; empty when nothing of this name exists.
-std::vector<Target> named(const Profile& profile, std::string_view text) {
-  const auto dot = text.find('.');
-  const auto object_name = od::identifier(text.substr(0, dot));
-  const auto part = dot == std::string_view::npos ? std::string() : od::identifier(text.substr(dot + 1));
-  std::vector<Target> out;
-  if (object_name.empty()) return out;
-  for (const auto& object : profile.dictionary.objects()) {
-    if (od::identifier(object.name) != object_name) continue;
-    if (dot == std::string_view::npos) {
-      for (const auto& entry : object.entries)
-        if (is_plain(object) || entry.address.sub != 0) out.push_back(target_at(&profile, entry.address));
-    } else {
-      for (const auto* entry : entries_named(object, part))
-        out.push_back(target_at(&profile, entry->address));
-    }
-  }
-  return out;
-}
-
-void add_once(std::vector<Target>& targets, const Profile& profile, ObjectAddress address) {
-  if (std::none_of(targets.begin(), targets.end(), [&](const Target& t) { return t.address == address; }))
-    targets.push_back(target_at(&profile, address));
-}
-
-/// Parameters and entries that are called so for Chinese readers.
-std::vector<Target> named_in_chinese(const Profile& profile, std::string_view text) {
-  const auto wanted = chinese_key(text);
-  std::vector<Target> out;
-  if (wanted.empty()) return out;
-  for (const auto& parameter : profile.parameters)
-    if (parameter.object && chinese_key(parameter.name_zh) == wanted)
-      add_once(out, profile, *parameter.object);
-  for (const auto& object : profile.dictionary.objects())
-    for (const auto& entry : object.entries)
-      if (chinese_key(entry.name_zh) == wanted) add_once(out, profile, entry.address);
-  return out;
-}
-
-/// Objects by their English names, else parameters.
-std::vector<Target> named_in_english(const Profile& profile, std::string_view text) {
-  if (!is_ascii(text)) return {};
-  auto out = named(profile, text);
-  if (!out.empty()) return out;
-  const auto wanted = od::identifier(text);
-  for (const auto& parameter : profile.parameters)
-    if (parameter.object && od::identifier(parameter.name) == wanted)
-      out.push_back(target_at(&profile, *parameter.object));
-  return out;
-}
-
-/// Parameters that are called so, in English or for Chinese readers.
-std::vector<const od::Parameter*> parameters_named(const Profile& profile, std::string_view text) {
-  std::vector<const od::Parameter*> out;
-  const auto wanted = is_ascii(text) ? od::identifier(text) : std::string();
-  for (const auto& parameter : profile.parameters)
-    if (!wanted.empty() && od::identifier(parameter.name) == wanted) out.push_back(&parameter);
-  if (!out.empty()) return out;
-  const auto chinese = chinese_key(text);
-  for (const auto& parameter : profile.parameters)
-    if (!chinese.empty() && chinese_key(parameter.name_zh) == chinese) out.push_back(&parameter);
-  return out;
-}
-
 tl::unexpected<Error> without_object(const od::Parameter& parameter) {
   return fail(Errc::usage, formatted("{} has no CANopen object", parameter.id + " " + parameter.name),
               "it can be changed only on the panel; `param explain` describes it");
-}
-
-std::string full_name(const Profile& profile, const Target& target) {
-  if (target.parameter != nullptr) return target.parameter->id;
-  const auto* object = profile.dictionary.object(target.address.index);
-  return object != nullptr && target.entry != nullptr ? entry_name(*object, *target.entry)
-                                                      : to_string(target.address);
 }
 
 /// A number that only the family's rule knows.
@@ -210,8 +100,9 @@ Target target_at(const Profile* profile, ObjectAddress address) {
 }
 
 std::string entry_name(const od::Object& object, const od::Entry& entry) {
-  const auto name = od::identifier(object.name);
-  return is_plain(object) ? name : name + "." + od::identifier(entry.name);
+  const bool is_plain = object.entries.size() == 1 && object.entries.front().address.sub == 0;
+  const auto name = name_key(object.name);
+  return is_plain ? name : name + "." + name_key(entry.name);
 }
 
 std::optional<ObjectAddress> place_of(const Profile& profile, std::string_view name) {
@@ -222,26 +113,29 @@ std::optional<ObjectAddress> place_of(const Profile& profile, std::string_view n
 
 std::vector<std::string> names(const Profile& profile) {
   std::vector<std::string> out;
-  for (const auto& parameter : profile.parameters) out.push_back(parameter.id);
+  for (const auto& parameter : profile.parameters)
+    if (!parameter.placed) out.push_back(parameter.id);
   for (const auto& object : profile.dictionary.objects())
     for (const auto& entry : object.entries)
       if (profile.parameter(entry.address) == nullptr) out.push_back(entry_name(object, entry));
   return out;
 }
 
-Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::string_view text) {
+Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::string_view text, Match match) {
   if (const auto* parameter = profile.parameter(text)) return parameter;
   if (const auto address = parse_object_address(text))
     if (const auto* parameter = profile.parameter(*address)) return parameter;
-  const auto named = parameters_named(profile, text);
+  if (const auto address = parse_object_address(text))
+    if (const auto* placed = profile.parameter(to_string(*address))) return placed;
+  const auto named = parameters_named(profile, text, match);
   if (named.size() == 1) return named.front();
   std::vector<std::string> known;
-  for (const auto* parameter : named) known.push_back(parameter->id);
+  for (const auto* parameter : named) known.push_back(numbered_name(*parameter));
   if (named.size() > 1) return ambiguous(text, known);
   for (const auto& parameter : profile.parameters) known.push_back(parameter.id);
-  auto hint = profile.parameters.empty() ? formatted("{} has no panel parameter table", profile.family)
-              : is_ascii(text)           ? did_you_mean(text, known)
-                                         : near_in_chinese(profile, text, false);
+  auto hint =
+      known.empty() ? formatted("{} has no parameters", profile.family) : near_names(profile, text, false);
+  if (hint.empty() && is_ascii(text)) hint = did_you_mean(text, known);
   if (hint.empty())
     hint = formatted("`param list -d {0}` shows all, `param search WORD -d {0}` finds them by name",
                      profile.family);
@@ -249,15 +143,30 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
               std::move(hint));
 }
 
-Result<Target> resolve_panel(const Profile& profile, std::string_view text) {
+Result<Target> resolve_panel(const Profile& profile, std::string_view text, Match match) {
   if (auto target = by_rule(profile, text)) return *target;
-  const auto parameter = resolve_parameter(profile, text);
+  const auto parameter = resolve_parameter(profile, text, match);
   if (!parameter) return fail(parameter.error());
-  return resolve(&profile, (*parameter)->id);
+  if (!(*parameter)->object) return without_object(**parameter);
+  return target_at(&profile, *(*parameter)->object);
 }
 
-Result<Target> resolve(const Profile* profile, std::string_view text) {
-  if (const auto address = parse_object_address(text)) return target_at(profile, *address);
+namespace {
+
+/// `A001` may be a maker's number and the address of an object: it is what there is, and both are one too
+/// many.
+Result<Target> at_address(const Profile* profile, ObjectAddress address, std::string_view text) {
+  const auto* numbered = profile == nullptr ? nullptr : profile->parameter(text);
+  if (numbered == nullptr || numbered->placed || !numbered->object || *numbered->object == address)
+    return target_at(profile, address);
+  if (profile->dictionary.object(address.index) == nullptr) return target_at(profile, *numbered->object);
+  return ambiguous(text, {to_string(address), to_string(*numbered->object)});
+}
+
+}  // namespace
+
+Result<Target> resolve(const Profile* profile, std::string_view text, Match match) {
+  if (const auto address = parse_object_address(text)) return at_address(profile, *address, text);
   if (profile == nullptr)
     return fail(Errc::usage, formatted("'{}' is not an object address, and names need a drive family", text),
                 "write an address such as 0x6041 or 0x6099:1, or add -d FAMILY (`drives` lists them)");
@@ -266,15 +175,16 @@ Result<Target> resolve(const Profile* profile, std::string_view text) {
     return target_at(profile, *parameter->object);
   }
   if (auto target = by_rule(*profile, text)) return *target;
-  auto found = named_in_english(*profile, text);
-  if (found.empty()) found = named_in_chinese(*profile, text);
-  if (found.empty()) {
-    const auto named = parameters_named(*profile, text);
-    return named.empty() ? unknown(*profile, text) : without_object(*named.front());
-  }
+  auto found = named_wholly(*profile, text);
+  if (found.empty())
+    if (const auto named = parameters_named(*profile, text, Match::whole); !named.empty())
+      return without_object(*named.front());
+  if (found.empty() && match == Match::part && !looks_like_number(text))
+    found = named_in_part(*profile, text);
+  if (found.empty()) return unknown(*profile, text);
   if (found.size() == 1) return found.front();
   std::vector<std::string> meanings;
-  for (const auto& target : found) meanings.push_back(full_name(*profile, target));
+  for (const auto& target : found) meanings.push_back(written_name(*profile, target));
   return ambiguous(text, meanings);
 }
 

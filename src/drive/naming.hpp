@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,19 +30,25 @@ struct Target {
   bool is_contradicted(std::string_view field) const;
 };
 
-/// Finds an object by address (`0x6041`, `6099h.1`), by name (`statusword`, `homing_speeds.switch`, `状态字`)
-/// or by panel number (`Pn202`), in any case. Without a profile only addresses are understood. Errc::usage
-/// when the name is unknown (nearest names offered), ambiguous (all meanings offered), or belongs to a
-/// parameter without an object.
-Result<Target> resolve(const Profile* profile, std::string_view text);
+/// How much of a name has to be written: all of it, or, where nothing is changed, a part that no other name
+/// has (`loop gain`).
+enum class Match : std::uint8_t { whole, part };
+
+/// Finds an object by address (`0x6041`, `6099h.1`), by name as the maker wrote it (`statusword`,
+/// `homing_speeds.switch`, `Pr1.01 1st velocity loop gain`, `速度环增益1`, `状态字`) or by panel number
+/// (`Pn202`), in any case. Without a profile only addresses are understood. Errc::usage when the name is
+/// unknown (nearest names offered), ambiguous (all meanings offered), or belongs to a parameter without an
+/// object.
+Result<Target> resolve(const Profile* profile, std::string_view text, Match match = Match::whole);
 
 /// The panel parameter of this number or name. Errc::usage as in resolve(); one without an object is found as
 /// well.
-Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::string_view text);
+Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::string_view text,
+                                               Match match = Match::whole);
 
 /// The object of a panel parameter, by number or name; of numbers the table does not list as well where the
 /// family's rule allows it. Errc::usage as in resolve().
-Result<Target> resolve_panel(const Profile& profile, std::string_view text);
+Result<Target> resolve_panel(const Profile& profile, std::string_view text, Match match = Match::whole);
 
 /// Where a parameter or object stands that the rules name (`Pn0049`, `0x2003:01`); empty for an empty name
 /// and for a parameter without an object.

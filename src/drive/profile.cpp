@@ -8,6 +8,7 @@
 #include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/family_files.hpp"
+#include "drive/maker_parameters.hpp"
 #include "drive/profile_sheet.hpp"
 #include "od/data_sheet.hpp"
 
@@ -19,9 +20,6 @@ fs::path with_extension(const fs::path& stem, std::string_view extension) {
   return stem.string() + std::string(extension);
 }
 
-/// The family whose files say what CiA 301 and CiA 402 say of every drive.
-constexpr std::string_view kGenericFamily = "cia402";
-
 Result<void> add_dictionary(Profile& profile, const fs::path& path) {
   return add_sheet(profile, path.string());
 }
@@ -32,6 +30,7 @@ Result<void> add_parameters(Profile& profile, const fs::path& path) {
   auto parameters = od::parse_parameters(*text, path.string());
   if (!parameters) return fail(parameters.error());
   profile.parameters = std::move(*parameters);
+  profile.made_of_dictionary = false;
   return {};
 }
 
@@ -199,11 +198,18 @@ std::string canonical_id(std::string_view id) {
 }
 
 void Profile::build_index() {
+  if (parameters.empty() || made_of_dictionary) {
+    parameters = maker_parameters(dictionary);
+    made_of_dictionary = !parameters.empty();
+  }
+  // The lines of a data sheet are not those of a manual.
+  if (made_of_dictionary && of_file)
+    for (auto& parameter : parameters) parameter.line = 0;
   by_id_.clear();
   by_object_.clear();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     by_id_.emplace(canonical_id(parameters[i].id), i);
-    if (parameters[i].object) by_object_.emplace(*parameters[i].object, i);
+    if (parameters[i].object && !parameters[i].placed) by_object_.emplace(*parameters[i].object, i);
   }
 }
 

@@ -20,12 +20,16 @@
 
 namespace servoctl::drive {
 
+/// The family whose files say what CiA 301 and CiA 402 say of every drive.
+inline constexpr std::string_view kGenericFamily = "cia402";
+
 /// All that is known of one drive family: its dictionary, panel parameters, faults and rules.
 struct Profile {
   std::string family;  ///< `gsd600`; the path for a file of the user's own.
   Rules rules;
   od::Dictionary dictionary;
   std::vector<od::Parameter> parameters;
+  bool made_of_dictionary = false;  ///< There is no table of parameters: see maker_parameters().
   std::vector<Fault> faults;
   /// Where it has a table of its own those of its parents, or of CiA 402: what codes mean that it does not
   /// list.
@@ -48,7 +52,8 @@ struct Profile {
   /// The rules are those of CiA 301 and 402 alone: what this drive does otherwise is not known.
   bool is_generic() const;
 
-  /// Builds the tables behind parameter(); called by load_profile().
+  /// Builds the tables behind parameter(), and the parameters of a dictionary that comes without a table of
+  /// them; called by load_profile().
   void build_index();
 
  private:

@@ -210,6 +210,12 @@ Meaning fitted(Meaning meaning, std::size_t bytes) {
   return meaning;
 }
 
+Meaning as_answered(Meaning meaning, std::size_t bytes) {
+  // The bits of a float have the length of a float.
+  if (meaning.encoding == od::Encoding::plain) meaning.size_known = false;
+  return fitted(std::move(meaning), bytes);
+}
+
 Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
   if (!od::is_number(meaning.encoding, value))
     return fail(Errc::usage, "its bits are those of infinity or of no number (NaN)", "give a finite number");

@@ -41,6 +41,10 @@ Meaning meaning(const Target& target, std::uint8_t node);
 /// length: an integer of the same sign and that length, half a float instead of a whole one.
 Meaning fitted(Meaning meaning, std::size_t bytes);
 
+/// The meaning for bytes that a drive has answered: its object may have another size than its data say, and
+/// then holds an integer of the same sign in that size.
+Meaning as_answered(Meaning meaning, std::size_t bytes);
+
 /// Reads what a user writes for this object: a plain number is the raw number that the drive and its panel
 /// show; a number with a unit (`60rpm`, `250ms`, `12%`) is converted and must come out exact; an enum label
 /// stands for its value. Where the object carries an encoded number (`f32`), a decimal number is that number

@@ -79,6 +79,7 @@ inline constexpr ObjectAddress kMaxSlippage{0x60F8, 0};
 
 inline constexpr ObjectAddress kHomeOffset{0x607C, 0};
 inline constexpr ObjectAddress kHomingMethod{0x6098, 0};
+inline constexpr std::uint16_t kSupportedHomingIndex = 0x60E3;
 inline constexpr ObjectAddress kHomingSpeedSwitch{0x6099, 1};
 inline constexpr ObjectAddress kHomingSpeedZero{0x6099, 2};
 inline constexpr ObjectAddress kHomingAcceleration{0x609A, 0};

@@ -78,7 +78,7 @@ Result<double> Motion::find_unconverted_cap(std::optional<double> most) {
     return std::min(safe, most.value_or(safe));
   }
   return fail(Errc::usage, "no safe speed is known for this drive: its speeds cannot be converted to rpm",
-              formatted("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
+              formatted("add --limit in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 
 /// What limits the speed while the counts of a turn are not known.

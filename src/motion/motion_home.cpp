@@ -5,7 +5,9 @@
 #include "base/number.hpp"
 #include "drive/homing_method.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/homing_methods.hpp"
 #include "motion/motion_kinds.hpp"
+#include "motion/motion_needs.hpp"
 #include "motion/operation_mode.hpp"
 #include "session/stretch.hpp"
 
@@ -126,7 +128,9 @@ class Homing {
 Result<void> add(const Motion& motion, ObjectAddress object, const std::string& text, MotionPlan& plan) {
   if (text.empty()) return {};
   if (!motion.units().has(object))
-    return fail(motion.error(Errc::usage, formatted("this family has no object {}", to_string(object))));
+    return fail(motion.error(
+        Errc::usage, formatted("{} has no object {}", motion.units().profile().family, to_string(object)),
+        "leave this option out"));
   const bool is_way = object == objects::kHomeOffset;
   const auto data =
       motion.units().parse(object, text, is_way ? MotionUnits::Kind::way : MotionUnits::Kind::size);
@@ -160,6 +164,9 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
   if (meaning.labels != nullptr && label == nullptr)
     return fail(motion.error(Errc::refused, formatted("this family has no homing method {}", number),
                              "`objects 0x6098` lists them"));
+  const auto supported = supported_homing(motion.session(), motion.units().profile(), motion.node());
+  if (!supported) return fail(supported.error());
+  if (const auto has = check_homing(*supported, number, motion.node()); !has) return has;
   if (const auto possible = motion.intend({drive::Use::home, number}); !possible) return possible;
   plan.value = static_cast<double>(number);
   plan.summary = formatted("{}{}", number, label != nullptr ? " (" + label->label + ")" : "");
@@ -207,8 +214,8 @@ Duration longest_homing(Motion& motion, double fast, double slow) {
 }  // namespace
 
 Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
-  const auto mode = motion.rules().homing;
-  if (!mode) return fail(motion.error(Errc::refused, "this family has no homing mode"));
+  const auto mode = mode_for(motion.session(), motion.units().profile(), motion.node(), drive::Use::home);
+  if (!mode) return fail(mode.error());
   MotionPlan plan;
   plan.mode = *mode;
   for (const auto& [object, text] :
@@ -216,8 +223,6 @@ Result<MotionPlan> plan_home(Motion& motion, const Home& home) {
         std::pair(objects::kHomingSpeedZero, &home.slow), std::pair(objects::kHomeOffset, &home.offset)})
     if (const auto added = add(motion, object, *text, plan); !added) return fail(added.error());
   if (const auto known = check_method(motion, plan); !known) return fail(known.error());
-  if (motion.is_speed_unproven() && home.fast.empty() && !takes_present_position(plan))
-    return fail(unproven_speed(motion));
   const auto fast = speed_of(motion, objects::kHomingSpeedSwitch, plan);
   if (!fast) return fail(fast.error());
   auto slow = *fast;

@@ -6,6 +6,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_judgement.hpp"
 #include "motion/motion_kinds.hpp"
+#include "motion/motion_needs.hpp"
 #include "session/stretch.hpp"
 
 namespace servoctl::motion {
@@ -175,8 +176,8 @@ std::string jog_text(const std::string& speed, const Jog& jog) {
 }  // namespace
 
 Result<MotionPlan> plan_jog(Motion& motion, const Jog& jog) {
-  const auto mode = motion.rules().velocity;
-  if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
+  const auto mode = mode_for(motion.session(), motion.units().profile(), motion.node(), drive::Use::jog);
+  if (!mode) return fail(mode.error());
   if (const auto possible = motion.intend({drive::Use::jog}); !possible) return fail(possible.error());
   MotionPlan plan;
   plan.mode = *mode;

@@ -6,6 +6,7 @@
 #include "base/number.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/motion_kinds.hpp"
+#include "motion/motion_needs.hpp"
 #include "motion/speed_monitor.hpp"
 #include "session/stretch.hpp"
 
@@ -208,8 +209,8 @@ Result<void> check_units(const Motion& motion, const Learn& learn) {
 }  // namespace
 
 Result<MotionPlan> plan_learn(Motion& motion, const Learn& learn) {
-  const auto mode = motion.rules().velocity;
-  if (!mode) return fail(motion.error(Errc::refused, "this family has no velocity mode"));
+  const auto mode = mode_for(motion.session(), motion.units().profile(), motion.node(), drive::Use::jog);
+  if (!mode) return fail(mode.error());
   if (const auto possible = motion.intend({drive::Use::jog}); !possible) return fail(possible.error());
   if (const auto counted = check_units(motion, learn); !counted) return fail(counted.error());
   if (const auto still = SpeedMonitor(motion, learn).check_still(); !still) return fail(still.error());

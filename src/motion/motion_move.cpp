@@ -6,6 +6,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_judgement.hpp"
 #include "motion/motion_kinds.hpp"
+#include "motion/motion_needs.hpp"
 #include "motion/operation_mode.hpp"
 #include "session/stretch.hpp"
 
@@ -205,6 +206,14 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
                            "nothing was moved; run the command again"));
 }
 
+Result<ObjectAddress> speed_object_of(const Motion& motion) {
+  const auto& name = motion.rules().position_speed;
+  const auto object = motion.units().object(name);
+  if (object && motion.units().has(*object)) return *object;
+  return fail(motion.error(Errc::refused, formatted("{} has no object for the speed of a move ({})",
+                                                    motion.units().profile().family, name)));
+}
+
 /// The speed that was asked for, else a part of what is allowed; empty where its unit is not known.
 Result<std::optional<Bytes>> move_speed(Motion& motion, const Move& move, ObjectAddress object,
                                         MotionPlan& plan) {
@@ -223,13 +232,12 @@ Result<std::optional<Bytes>> move_speed(Motion& motion, const Move& move, Object
 }  // namespace
 
 Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
-  const auto mode = motion.rules().position;
-  if (!mode) return fail(motion.error(Errc::refused, "this family has no position mode"));
+  const auto mode = mode_for(motion.session(), motion.units().profile(), motion.node(), drive::Use::move);
+  if (!mode) return fail(mode.error());
   if (const auto possible = motion.intend({drive::Use::move}); !possible) return fail(possible.error());
   const auto& units = motion.units();
-  const auto speed_object = units.object(motion.rules().position_speed);
-  if (!speed_object || !units.has(*speed_object))
-    return fail(motion.error(Errc::refused, "this family has no known object for the speed of a move"));
+  const auto speed_object = speed_object_of(motion);
+  if (!speed_object) return fail(speed_object.error());
   MotionPlan plan;
   plan.mode = *mode;
   if (const auto found = find_target(motion, move, plan); !found) return fail(found.error());
@@ -251,7 +259,7 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
       !ramps)
     return fail(ramps.error());
   plan.settings.emplace_back(*speed_object, **speed);
-  if (speed_object == objects::kTargetVelocity) plan.kept_target = *speed_object;
+  if (*speed_object == objects::kTargetVelocity) plan.kept_target = *speed_object;
   plan.moving = {{objects::kTargetPosition, plan.command}};
   if (motion.rules().handshake)
     for (const auto word : {kEnabled, kNewSetpoint, kEnabled})

@@ -6,6 +6,7 @@
 #include "drive/standard_objects.hpp"
 #include "motion/motion_judgement.hpp"
 #include "motion/motion_kinds.hpp"
+#include "motion/motion_needs.hpp"
 #include "session/stretch.hpp"
 
 namespace servoctl::motion {
@@ -72,8 +73,8 @@ Result<void> check_torque(const Motion& motion, const Physical& torque) {
 }  // namespace
 
 Result<MotionPlan> plan_torque(Motion& motion, const Torque& torque) {
-  const auto mode = motion.rules().torque;
-  if (!mode) return fail(motion.error(Errc::refused, "this family has no torque mode"));
+  const auto mode = mode_for(motion.session(), motion.units().profile(), motion.node(), drive::Use::torque);
+  if (!mode) return fail(mode.error());
   if (const auto possible = motion.intend({drive::Use::torque}); !possible) return fail(possible.error());
   const auto cap = motion.speed_cap();
   if (!cap) return fail(cap.error());

@@ -51,6 +51,15 @@ ObjectAddress naming(const drive::Meaning& what) {
   return what.unit == "inc/s" ? ObjectAddress{0x60A9, 0} : ObjectAddress{0x60AA, 0};
 }
 
+/// Where the unit of speeds is found: a drive without a velocity mode has no 60FFh, and limits of a speed are
+/// in the unit of its other speeds.
+ObjectAddress stated_at(const drive::Profile& profile, ObjectAddress object) {
+  if (object != objects::kTargetVelocity || profile.dictionary.find(object) != nullptr) return object;
+  for (const auto other : {objects::kProfileVelocity, objects::kHomingSpeedSwitch, objects::kVelocityActual})
+    if (profile.dictionary.find(other) != nullptr) return other;
+  return object;
+}
+
 /// Nothing turns by it, in whatever unit.
 bool is_zero(std::string_view text) {
   const auto number = parse_integer(text);
@@ -98,7 +107,7 @@ void MotionUnits::tell(std::optional<double> turn, std::optional<double> encoder
 bool MotionUnits::has(ObjectAddress object) const { return profile_->dictionary.find(object) != nullptr; }
 
 drive::Meaning MotionUnits::meaning(ObjectAddress object) const {
-  const auto target = drive::target_at(profile_, object);
+  const auto target = drive::target_at(profile_, stated_at(*profile_, object));
   auto out = drive::meaning(target, node_);
   if (own_) own_->apply(target, out);
   if (!out.measure) return out;
@@ -108,11 +117,12 @@ drive::Meaning MotionUnits::meaning(ObjectAddress object) const {
 }
 
 bool MotionUnits::is_unproven(ObjectAddress object) const {
-  return own_ && !own_->proves(drive::target_at(profile_, object));
+  return own_ && !own_->proves(drive::target_at(profile_, stated_at(*profile_, object)));
 }
 
 Error MotionUnits::unproven(ObjectAddress object, std::string_view text) const {
-  const auto named_by = naming(drive::meaning(drive::target_at(profile_, object), node_));
+  const auto named_by =
+      naming(drive::meaning(drive::target_at(profile_, stated_at(*profile_, object)), node_));
   return make_error(
       Errc::usage,
       formatted("'{}': the unit of {} is not known: neither the drive's data nor the drive ({}) states it",
@@ -142,7 +152,8 @@ Result<void> MotionUnits::check_unit(const drive::Meaning& what, ObjectAddress o
   const auto given = drive::split_unit(trim(motor));
   if (given && !parse_integer(trim(motor)) && is_unproven(object)) return fail(unproven(object, text));
   // Without a drive an assumed unit is as good as the plain number.
-  if (what.unit.empty() || (!given && !own_ && drive::is_unit_assumed(drive::target_at(profile_, object))))
+  if (what.unit.empty() ||
+      (!given && !own_ && drive::is_unit_assumed(drive::target_at(profile_, stated_at(*profile_, object)))))
     return {};
   if (given && converts(what, given->unit)) return {};
   std::vector<std::string_view> units;
@@ -180,7 +191,7 @@ Result<Setpoint> MotionUnits::parse(ObjectAddress object, std::string_view text,
 }
 
 std::optional<Physical> MotionUnits::physical(ObjectAddress object, ByteSpan bytes) const {
-  const auto what = meaning(object);
+  const auto what = drive::as_answered(meaning(object), bytes.size());
   const auto value = what.type_known ? od::decode(what.type, bytes) : Result<od::Value>(od::Value());
   if (!what.type_known || !value) return std::nullopt;
   return physical_of(what, *value);

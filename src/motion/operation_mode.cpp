@@ -4,7 +4,9 @@
 #include "base/text.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
+#include "motion/motion_needs.hpp"
 #include "motion/power.hpp"
+#include "session/fitting_size.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -27,6 +29,12 @@ std::string mode_text(const drive::Profile& profile, std::int8_t mode, bool chin
   return formatted("{} {}", mode, chinese && !label->label_zh.empty() ? label->label_zh : label->label);
 }
 
+bool is_unknown_maker_mode(const drive::Profile& profile, std::int8_t mode) {
+  if (mode >= 0 || !profile.is_generic()) return false;
+  const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), 0);
+  return drive::label_of(meaning, od::Value(std::int64_t{mode})) == nullptr;
+}
+
 Result<std::int8_t> read_mode(session::Session& session, std::uint8_t node) {
   const auto answer = session.upload(node, objects::kModeDisplay);
   if (!answer) return fail(answer.error());
@@ -36,18 +44,19 @@ Result<std::int8_t> read_mode(session::Session& session, std::uint8_t node) {
 Result<void> check_mode(session::Session& session, const drive::Profile& profile, std::uint8_t node,
                         std::int8_t mode) {
   const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
+  if (is_unknown_maker_mode(profile, mode)) return {};
   if (meaning.labels != nullptr && drive::label_of(meaning, od::Value(std::int64_t{mode})) == nullptr)
-    return fail(drive_error(Errc::refused, node, formatted("this family has no mode {}", mode),
+    return fail(drive_error(Errc::refused, node, formatted("{} has no mode {}", profile.family, mode),
                             "modes: " + known_modes(meaning)));
-  if (mode < 1 || mode > 32 || profile.dictionary.find(objects::kSupportedModes) == nullptr) return {};
-  const auto supported = session.upload(node, objects::kSupportedModes);
-  if (!supported && supported.error().code != Errc::sdo_abort) return fail(supported.error());
-  const auto bits = supported ? load_le(*supported) : 0;
-  if (bits == 0 || (bits >> static_cast<unsigned>(mode - 1) & 1U) != 0) return {};
+  if (mode < 1 || mode > 32) return {};
+  const auto modes = supported_modes(session, profile, node);
+  if (!modes) return fail(modes.error());
+  if (supports(*modes, mode)) return {};
+  auto hint = possible_motions(profile, *modes);
   return fail(drive_error(
       Errc::refused, node,
-      formatted("the drive does not support mode {} (6502h is 0x{:X})", mode_text(profile, mode), bits),
-      "6502h lists its modes: bit 0 is mode 1"));
+      formatted("the drive does not support mode {} (0x6502 is 0x{:X})", mode_text(profile, mode), *modes),
+      hint.empty() ? "0x6502 lists its modes: bit 0 is mode 1" : std::move(hint)));
 }
 
 session::SdoRequest mode_write(const drive::Profile& profile, std::uint8_t node, std::int8_t mode) {
@@ -60,7 +69,8 @@ session::SdoRequest mode_write(const drive::Profile& profile, std::uint8_t node,
 Result<void> set_mode(session::Session& session, const drive::Profile& profile, std::uint8_t node,
                       std::int8_t mode) {
   const auto write = mode_write(profile, node, mode);
-  if (const auto written = session.download(node, write.object, *write.data); !written) return written;
+  const auto written = session::download_in_size(session, node, write.object, *write.data, od::DataType::i8);
+  if (!written) return written;
   const auto end = session.now() + kModePatience;
   for (;;) {
     const auto now_in = read_mode(session, node);

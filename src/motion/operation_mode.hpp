@@ -11,8 +11,11 @@ namespace servoctl::motion {
 /// The mode the drive is in, by 6061h.
 Result<std::int8_t> read_mode(session::Session& session, std::uint8_t node);
 
+/// A manufacturer's mode (below 0) of a drive whose data are the standard's: what it does is not known.
+bool is_unknown_maker_mode(const drive::Profile& profile, std::int8_t mode);
+
 /// Errc::refused when the family's list (labels of 6060h) or the drive itself (6502h, where it tells) does
-/// not have the mode. Reads one object at most.
+/// not have the mode; never for is_unknown_maker_mode(). Reads one object at most.
 Result<void> check_mode(session::Session& session, const drive::Profile& profile, std::uint8_t node,
                         std::int8_t mode);
 

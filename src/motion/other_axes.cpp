@@ -59,9 +59,13 @@ std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profil
   return out;
 }
 
-std::string axes_text(const std::vector<OtherAxis>& others) {
+std::string axes_text(const std::vector<OtherAxis>& others, bool has_first) {
   std::string states;
   for (const auto& axis : others) append(states, axis.text(), "; ");
+  if (!has_first)
+    return formatted(
+        "it has no axis 1 ({}), which servoctl commands; {}; `read` and `write` reach its objects",
+        to_string(objects::kStatusword), states);
   return formatted("the device has {} axes; this is about axis 1 ({}) only; {}", others.size() + 1,
                    to_string(objects::kStatusword), states);
 }

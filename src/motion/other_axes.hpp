@@ -31,7 +31,8 @@ std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profil
                                   std::uint8_t node);
 
 /// The device has N axes, and which one is meant: `the device has 2 axes; this is about axis 1 (0x6041:0)`.
-std::string axes_text(const std::vector<OtherAxis>& others);
+/// Of a device without axis 1 that is said.
+std::string axes_text(const std::vector<OtherAxis>& others, bool has_first = true);
 
 /// Takes the power of these axes away with 07h and 00h, or sends 02h, and reads their states. Errc::negative
 /// for the first that may still be energised.

@@ -106,7 +106,7 @@ Result<std::string> against_guarding(session::Session& session, const drive::Pro
   for (const auto object : {objects::kGuardTime, objects::kLifeTimeFactor}) {
     const auto there = number(session, node, object);
     if (!there) return fail(there.error());
-    if (!*there) return "it has no " + to_string(object);
+    if (!*there) return formatted("it has no {}", to_string(object));
   }
   if (has(profile, objects::kProducerHeartbeat)) {
     const auto period = number(session, node, objects::kProducerHeartbeat);

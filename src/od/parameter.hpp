@@ -31,6 +31,7 @@ struct Parameter {
   std::string group;
   bool command = false;                 ///< Writing it starts an action; kept out of backups.
   bool is_volatile = false;             ///< A reading, not a setting; kept out of backups.
+  bool placed = false;                  ///< It has no number of its own: `id` is the address of its object.
   std::optional<ObjectAddress> mirror;  ///< The object whose stored value it is.
   Doubts doubts;
   std::string note;

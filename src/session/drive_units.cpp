@@ -1,5 +1,7 @@
 #include "session/drive_units.hpp"
 
+#include <algorithm>
+#include <span>
 #include <vector>
 
 #include "drive/assumed_unit.hpp"
@@ -21,19 +23,26 @@ constexpr ObjectAddress kSiUnitAcceleration{0x60AA, 0};
 constexpr ObjectAddress kVelocityFactorNumerator{0x6096, 1};
 constexpr ObjectAddress kVelocityFactorDivisor{0x6096, 2};
 
-/// The objects that name units, and those whose units they name.
+/// The objects that name units, and those whose units they name: a drive may have only some of them.
+constexpr ObjectAddress kPositions[] = {objects::kPositionActual, objects::kTargetPosition};
+constexpr ObjectAddress kSpeeds[] = {objects::kTargetVelocity, objects::kVelocityActual,
+                                     objects::kProfileVelocity, objects::kHomingSpeedSwitch};
+constexpr ObjectAddress kAccelerations[] = {objects::kProfileAcceleration, objects::kProfileDeceleration,
+                                            objects::kHomingAcceleration};
 struct Row {
-  ObjectAddress of;
+  std::span<const ObjectAddress> of;
   ObjectAddress named_by;
 };
-constexpr Row kRows[] = {{objects::kPositionActual, kSiUnitPosition},
-                         {objects::kTargetVelocity, kSiUnitVelocity},
-                         {objects::kProfileAcceleration, kSiUnitAcceleration},
-                         {objects::kTargetVelocity, kVelocityFactorNumerator},
-                         {objects::kTargetVelocity, kVelocityFactorDivisor}};
+constexpr Row kRows[] = {{kPositions, kSiUnitPosition},
+                         {kSpeeds, kSiUnitVelocity},
+                         {kAccelerations, kSiUnitAcceleration},
+                         {kSpeeds, kVelocityFactorNumerator},
+                         {kSpeeds, kVelocityFactorDivisor}};
 
-bool is_assumed(const drive::Profile& profile, ObjectAddress object) {
-  return drive::is_unit_assumed(drive::target_at(&profile, object));
+bool is_any_assumed(const drive::Profile& profile, std::span<const ObjectAddress> objects) {
+  return std::any_of(objects.begin(), objects.end(), [&](ObjectAddress object) {
+    return drive::is_unit_assumed(drive::target_at(&profile, object));
+  });
 }
 
 std::optional<Unit> unit_of(const std::optional<Bytes>& answer) {
@@ -56,7 +65,7 @@ std::optional<double> factor_of(const std::optional<Bytes>& numerator, const std
 DriveUnits::DriveUnits(Session& session, const drive::Profile& profile, std::uint8_t node) {
   std::vector<SdoRequest> requests;
   for (const auto& row : kRows)
-    if (is_assumed(profile, row.of) && profile.dictionary.find(row.named_by) != nullptr)
+    if (is_any_assumed(profile, row.of) && profile.dictionary.find(row.named_by) != nullptr)
       requests.push_back({.node = node, .object = row.named_by});
   const auto answers = session.transfer(requests);
   const auto answer = [&](ObjectAddress object) -> std::optional<Bytes> {

@@ -19,6 +19,8 @@ class DriveUnits {
     double scale = 1;  ///< One of the raw value in it.
   };
 
+  /// Of a drive that cannot be asked: it names none.
+  DriveUnits() = default;
   /// Asks the drive for those of these objects that its dictionary has. Of a family whose data state the
   /// units nothing is read.
   DriveUnits(Session& session, const drive::Profile& profile, std::uint8_t node);

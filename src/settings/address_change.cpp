@@ -14,6 +14,7 @@
 #include "session/open_bus.hpp"
 #include "session/scan.hpp"
 #include "session/write.hpp"
+#include "settings/change.hpp"
 #include "settings/own_cob_ids.hpp"
 #include "show/planned_messages.hpp"
 
@@ -28,7 +29,8 @@ tl::unexpected<Error> no_parameter(const show::Desk& desk) {
                 "the number after -n changes with the order of the cables");
   return fail(Errc::usage,
               formatted("no parameter of a {} is known that sets its node-ID", desk.profile->family),
-              "look into its manual: switches, its panel, or the vendor's software");
+              "look into its manual: switches, its panel, or the vendor's software; where it is an object, "
+              "`address NEW --object INDEX:SUB`");
 }
 
 /// The parameter as the drive has it: its length is the drive's, whatever the manual says.
@@ -38,7 +40,12 @@ Result<void> add_write(show::Desk& desk, AddressChange& change, const std::strin
   if (!target) return fail(target.error());
   auto present = desk.session->upload(change.node, target->address);
   if (!present) return fail(present.error());
-  const auto meaning = drive::fitted(drive::meaning(*target, change.node), present->size());
+  const auto as_held = drive::as_answered(drive::meaning(*target, change.node), present->size());
+  const auto learned = learned_meaning(change.node, *target, as_held, *present);
+  if (!learned)
+    return fail(drive_error(Errc::refused, change.node, target->address,
+                            formatted("has {} bytes: it cannot hold a node-ID or bitrate", present->size())));
+  const auto& meaning = *learned;
   if (const auto fits = drive::check_limits(meaning, od::Value(value)); !fits) return fits;
   auto data = od::encode(meaning.type, od::Value(value));
   if (!data) return fail(data.error());

@@ -15,6 +15,7 @@
 #include "session/measure.hpp"
 #include "settings/energising.hpp"
 #include "settings/keeping_nodes.hpp"
+#include "settings/own_size.hpp"
 #include "settings/register_writes.hpp"
 #include "settings/stored_copies.hpp"
 #include "show/alarm_question.hpp"
@@ -163,7 +164,9 @@ Error with_password_hint(const show::Desk& desk, const Change& change, const Wri
 
 report::List change_row(const Change& change, const Result<session::Written>& written, const Value& kept,
                         const show::Desk& desk) {
-  const show::Reading reading{change.node, change.target, change.type, change.data, change.bridge};
+  show::Reading reading{change.node, change.target, change.type, change.data, change.bridge};
+  static const session::DriveUnits kNone;  // A unit that the data only assume is not the drive's.
+  if (desk.profile != nullptr && desk.profile->is_generic()) reading.units = &kNone;
   const auto decoded = show::decode_value(reading, change.data);
   const auto effect = drive::meaning(change.target, change.node).effect;
   const auto name = desk.chinese ? change.target.label_zh() : change.target.label();
@@ -223,7 +226,9 @@ Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Tar
       return named(proven.error(), node, target);
   }
   if (const auto added = add_bridge(desk, node, target, value, *meaning); !added) return fail(added.error());
-  return change_to(desk.profile, node, target, *meaning, value);
+  auto change = change_to(desk.profile, node, target, *meaning, value);
+  if (change) change->type_given = type.has_value();
+  return change;
 }
 
 Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive::Target& target,
@@ -277,7 +282,7 @@ void read_in_force(show::Desk& desk, std::span<const Change> changes) {
 }  // namespace
 
 Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, const WriteOptions& options) {
-  const auto changes = changes_with(desk, wanted, options);
+  auto changes = changes_with(desk, wanted, options);
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
@@ -288,8 +293,9 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, co
   });
   const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
   read_in_force(desk, changes);
-  const auto written = session::write_all(*desk.session, requests,
-                                          options.read_back || options.keep || is_only_echoed(desk, changes));
+  const bool read_back = options.read_back || options.keep || is_only_echoed(desk, changes);
+  auto written = session::write_all(*desk.session, requests, read_back);
+  write_in_own_size(desk, changes, requests, written, read_back);
   keeping.close(written);
   for (const auto& change : changes)
     if (enables(change)) desk.session->energised().insert(change.node);

@@ -21,6 +21,7 @@ struct Change {
   Bytes data;
   canopen::Transfer transfer = canopen::Transfer::automatic;
   std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
+  bool type_given = false;                   ///< The user said the type: its size is not to be changed.
 };
 
 /// Name of the object for a message that tells its address beside it: its label, else its address.

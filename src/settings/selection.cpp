@@ -9,6 +9,12 @@
 #include "drive/drive_settings.hpp"
 
 namespace servoctl::settings {
+namespace {
+
+/// Manufacturer-specific profile area (CiA 301, table 31).
+bool is_of_maker(ObjectAddress object) { return object.index >= 0x2000 && object.index < 0x6000; }
+
+}  // namespace
 
 Result<Selection> selection_of(const drive::Profile& profile, std::string_view word) {
   if (word.empty()) return Selection{};
@@ -21,7 +27,9 @@ Result<Selection> selection_of(const drive::Profile& profile, std::string_view w
   if (word == "pdo")
     return Selection{[&profile](ObjectAddress object) { return drive::is_of_pdos(profile, object); }};
   if (word == "params")
-    return Selection{[&profile](ObjectAddress object) { return profile.parameter(object) != nullptr; }};
+    return Selection{[&profile](ObjectAddress object) {
+      return profile.parameter(object) != nullptr || (profile.made_of_dictionary && is_of_maker(object));
+    }};
   std::set<std::string> groups;
   for (const auto& parameter : profile.parameters)
     if (!parameter.group.empty()) groups.insert(parameter.group);

@@ -20,7 +20,9 @@ namespace servoctl::show {
 struct Desk {
   session::Session* session = nullptr;      ///< Set when the command needs a bus.
   const drive::Profile* profile = nullptr;  ///< Set when a family was named, or is needed.
-  std::vector<std::uint8_t> nodes;          ///< That are meant; 0 stands for all.
+  /// What CiA 301 and 402 say: for the names of standard objects where `profile` is null. May be null.
+  const drive::Profile* standard = nullptr;
+  std::vector<std::uint8_t> nodes;  ///< That are meant; 0 stands for all.
   /// Numbers that are given to drives: nobody may come there while a question waits.
   std::vector<std::uint8_t> free_nodes;
   /// What the loads of nodes move, where somebody said it: `20mm` means something there.

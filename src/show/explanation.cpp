@@ -135,6 +135,7 @@ void add_parameters(const TopicQuery& query, const drive::Profile& profile, bool
   const auto* by_id = profile.parameter(query.whole());
   const auto address = parse_object_address(query.whole());
   for (const auto& parameter : profile.parameters) {
+    if (parameter.placed) continue;  // It is told as an object.
     const bool named = query.names(parameter.name) || query.names(parameter.name_zh);
     const bool placed = address && parameter.object == address;
     const bool meant = &parameter == by_id || (!by_name_only && (named || placed));

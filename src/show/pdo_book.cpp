@@ -42,7 +42,7 @@ PdoField make_field(const drive::Profile* profile, bool chinese, std::uint8_t no
                     std::size_t first_bit) {
   PdoField out{entry, first_bit, drive::target_at(profile, entry.object), {}, {}, {}, {}};
   const std::size_t bytes = (entry.bits + 7U) / 8U;
-  out.meaning = drive::fitted(drive::meaning(out.target, node), bytes);
+  out.meaning = drive::as_answered(drive::meaning(out.target, node), bytes);
   out.type = out.meaning.type_known && od::size_of(out.meaning.type) == bytes ? out.meaning.type
                                                                               : unsigned_type(bytes);
   out.name = chinese ? out.target.label_zh() : out.target.label();
@@ -217,7 +217,7 @@ void PdoBook::rebuild(std::uint8_t id) {
   for (auto& pdo : session::pdos_of(place.now)) {
     if (place.now.count({pdo.communication_index(), 1}) == 0) pdo.cob_id = predefined_cob_id(pdo, id);
     const bool assumed = place.told.count({pdo.mapping_index(), 0}) == 0;
-    place.views.push_back(make_view(family_of(id), chinese_, id, std::move(pdo)));
+    place.views.push_back(make_view(names_of(id), chinese_, id, std::move(pdo)));
     place.views.back().assumed = assumed;
   }
   index();

@@ -70,7 +70,9 @@ void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json);
 class PdoBook {
  public:
   /// `profile` may be null; it outlives the book.
-  PdoBook(const drive::Profile* profile, bool chinese) : profile_(profile), chinese_(chinese) {}
+  /// `standard`: as Desk::standard.
+  PdoBook(const drive::Profile* profile, bool chinese, const drive::Profile* standard = nullptr)
+      : profile_(profile), names_(profile != nullptr ? profile : standard), chinese_(chinese) {}
 
   /// The family of one node, where it is not that of the others; before anything else is said of the node.
   void set_family(std::uint8_t node, const drive::Profile* profile) { families_[node] = profile; }
@@ -99,9 +101,14 @@ class PdoBook {
     const auto own = families_.find(node);
     return own == families_.end() ? profile_ : own->second;
   }
+  const drive::Profile* names_of(std::uint8_t node) const {
+    const auto* family = family_of(node);
+    return family == nullptr ? names_ : family;
+  }
 
   const drive::Profile* profile_;
   std::map<std::uint8_t, const drive::Profile*> families_;
+  const drive::Profile* names_;
   bool chinese_;
   std::map<std::uint8_t, Node> nodes_;
   std::array<const PdoView*, 0x800> by_id_{};

@@ -1,6 +1,8 @@
 #include "show/reading.hpp"
 
 #include <algorithm>
+#include <map>
+#include <span>
 
 #include "base/format.hpp"
 #include "base/number.hpp"
@@ -76,6 +78,28 @@ std::string watched_text(ObjectAddress object, ByteSpan bytes) {
   return formatted(" = node {}, {} ms", node, word & 0xFFFFU);
 }
 
+/// The units that drives name themselves, of those whose data only assume them.
+std::map<std::uint8_t, session::DriveUnits> own_units(Desk& desk, std::span<const Reading> readings) {
+  std::map<std::uint8_t, session::DriveUnits> out;
+  const auto* profile = desk.profile != nullptr ? desk.profile : desk.standard;
+  if (profile == nullptr || !profile->is_generic() || desk.session == nullptr) return out;
+  for (const auto& reading : readings)
+    if (reading.bytes && drive::is_unit_assumed(reading.target) && out.count(reading.node) == 0)
+      out.emplace(reading.node, session::DriveUnits(*desk.session, *profile, reading.node));
+  return out;
+}
+
+/// That the drive has the object in another size than its data say.
+void tell_size(Desk& desk, const Reading& reading) {
+  const auto meaning = drive::meaning(reading.target, reading.node);
+  if (!reading.bytes || reading.type || !meaning.type_known || !meaning.size_known) return;
+  const auto fitted = drive::as_answered(meaning, reading.bytes->size());
+  if (fitted.type == meaning.type) return;
+  desk.notices.push_back(formatted("node {}, object {}: the drive answers {} bytes, not {}: taken as {}",
+                                   reading.node, to_string(reading.target.address), reading.bytes->size(),
+                                   od::size_of(meaning.type).value_or(0), od::name(fitted.type)));
+}
+
 List reading_row(const Desk& desk, const Reading& reading) {
   const bool chinese = desk.chinese;
   const auto& target = reading.target;
@@ -124,7 +148,7 @@ std::size_t size_of(const Reading& reading) {
 
 od::DataType type_of(const Reading& reading, ByteSpan bytes) {
   if (reading.type) return *reading.type;
-  const auto meaning = drive::fitted(drive::meaning(reading.target, reading.node), bytes.size());
+  const auto meaning = drive::as_answered(drive::meaning(reading.target, reading.node), bytes.size());
   if (meaning.type_known) return meaning.type;
   const auto index = reading.target.address.index;
   if (index >= 0x1008 && index <= 0x100A)
@@ -143,7 +167,8 @@ od::DataType type_of(const Reading& reading, ByteSpan bytes) {
 
 DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
   DecodedValue out;
-  auto meaning = drive::fitted(drive::meaning(reading.target, reading.node), bytes.size());
+  auto meaning = drive::as_answered(drive::meaning(reading.target, reading.node), bytes.size());
+  if (reading.units != nullptr) reading.units->apply(reading.target, meaning);
   meaning.bridge = reading.bridge;
   const auto type = type_of(reading, bytes);
   if (!meaning.type_known) meaning.type = type;  // By its length: a COB-ID has eight digits.
@@ -190,6 +215,9 @@ FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& val
 
 Table reading_table(Desk& desk, std::vector<Reading> readings) {
   if (desk.profile != nullptr) add_bridges(*desk.session, *desk.profile, readings);
+  const auto units = own_units(desk, readings);
+  for (auto& reading : readings)
+    if (const auto own = units.find(reading.node); own != units.end()) reading.units = &own->second;
   Table table;
   table.columns = {{"node"},
                    {"object", "", Show::text},
@@ -212,6 +240,7 @@ Table reading_table(Desk& desk, std::vector<Reading> readings) {
   table.json_only =
       std::none_of(readings.begin(), readings.end(), [](const Reading& r) { return r.bytes.has_value(); });
   for (const auto& reading : readings) {
+    tell_size(desk, reading);
     table.rows.push_back(reading_row(desk, reading));
     if (!reading.bytes && (table.json_only || !is_refusal_of_one(reading)))
       desk.errors.push_back(reading.bytes.error());

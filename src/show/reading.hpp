@@ -7,6 +7,7 @@
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "report/value.hpp"
+#include "session/drive_units.hpp"
 #include "show/desk.hpp"
 
 /// Values read from drives, taken apart for a reader and for JSON.
@@ -18,7 +19,8 @@ struct Reading {
   drive::Target target;
   std::optional<od::DataType> type;  ///< Overrides the dictionary's type.
   Result<Bytes> bytes = Bytes{};
-  std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
+  std::optional<drive::Bridge> bridge = {};    ///< What the drive's own measures say of the unit.
+  const session::DriveUnits* units = nullptr;  ///< The drive's own, in the place of those its data assume.
   bool one_of_many = false;  ///< Of a record or a pattern: that the drive refuses it is an answer.
 };
 

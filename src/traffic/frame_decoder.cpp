@@ -231,7 +231,8 @@ void FrameDecoder::decode_sdo(const can::Frame& frame) {
   out_.service = "sdo";
   out_.node = node;
   drive::Target target;
-  if (step.object) target = drive::target_at(family_of(node), *step.object);
+  const auto* family = family_of(node);
+  if (step.object) target = drive::target_at(family != nullptr ? family : options_.standard, *step.object);
   out_.text = step_text(step, step.object ? name_of(target) : std::string(word("of a transfer begun before")),
                         step.kind == Step::abort ? std::string(word(abort_words_of(step))) : std::string(),
                         options_.chinese);
@@ -280,16 +281,23 @@ void FrameDecoder::end_sdo_fields(const canopen::SdoStep& step) {
 
 void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Target& target) {
   if (!step.object || !step.data) return leave_out({"value", "unit", "label", "bytes"});
-  const show::Reading reading{*out_.node, target, {}, Bytes{}};
+  show::Reading reading{*out_.node, target, {}, Bytes{}};
   // Some servers answer with four bytes for whatever is smaller, as canopen::SdoHabit says.
   auto data = *step.data;
   const auto size = show::size_of(reading);
   if (size != 0 && size < 4 && data.size() == 4 && load_le(data) >> (size * 8) == 0) data.resize(size);
+  // A unit that the data only assume is not the drive's.
+  static const session::DriveUnits kNone;
+  const auto* family = family_of(*out_.node);
+  if ((family == nullptr || family->is_generic()) && target.entry != nullptr) reading.units = &kNone;
   const auto value = show::decode_value(reading, data);
   out_.text += " = " + value.text;
   const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
-  if (const auto* words = std::get_if<std::string>(&label.data())) out_.text += " " + *words;
-  if (const auto words = words_of(data, target.address); !words.empty()) out_.text += " " + words;
+  // The mode that was heard tells more than the value alone.
+  if (const auto words = words_of(data, target.address); !words.empty())
+    out_.text += " " + words;
+  else if (const auto* said = std::get_if<std::string>(&label.data()))
+    out_.text += " " + *said;
   if (!options_.fields) return;
   fields_.member("value", value.value);
   fields_.text_or_null("unit", value.unit);

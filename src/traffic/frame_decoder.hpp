@@ -39,12 +39,15 @@ struct DecodedFrame {
 class FrameDecoder {
  public:
   struct Options {
-    const drive::Profile* profile = nullptr;  ///< May be null; outlives the decoder.
+    const drive::Profile* profile = nullptr;   ///< May be null; outlives the decoder.
+    const drive::Profile* standard = nullptr;  ///< As Desk::standard.
     bool chinese = false;
     bool fields = true;  ///< Whether DecodedFrame::fields are wanted: they take longer than the text.
   };
   explicit FrameDecoder(Options options)
-      : options_(options), pdos_(options.profile, options.chinese), modes_(options.profile) {}
+      : options_(options),
+        pdos_(options.profile, options.chinese, options.standard),
+        modes_(options.profile) {}
   FrameDecoder(const FrameDecoder&) = delete;
   FrameDecoder& operator=(const FrameDecoder&) = delete;
 

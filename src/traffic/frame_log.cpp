@@ -48,7 +48,7 @@ FrameLog::FrameLog(show::Desk& desk, FrameFilter filter, bool raw)
     : filter_(std::move(filter)),
       raw_(raw),
       writer_(desk),
-      decoder_({desk.profile, desk.chinese, writer_.wants_records()}),
+      decoder_({desk.profile, desk.standard, desk.chinese, writer_.wants_records()}),
       chinese_(desk.chinese) {}
 
 void FrameLog::begin_line(Duration time) {

@@ -50,7 +50,7 @@ class Choice {
         drives_(&drives),
         only_(choice.only),
         master_(choice.of_master),
-        decoder_({desk.profile, false, false}) {
+        decoder_({desk.profile, desk.standard, false, false}) {
     for (const auto& [node, values] : drives.pdos) decoder_.pdos().set(node, values);
   }
 

@@ -12,6 +12,7 @@
 #include "session/measure.hpp"
 #include "show/alarm_question.hpp"
 #include "show/records.hpp"
+#include "show/standard_names.hpp"
 
 namespace servoctl::traffic {
 namespace {
@@ -40,13 +41,27 @@ void add_bridges(show::Desk& desk, std::vector<Channel>& channels, std::optional
   }
 }
 
+/// Of a drive whose data only assume units: those that it names.
+void add_own_units(show::Desk& desk, std::vector<Channel>& channels) {
+  const auto* profile = desk.profile != nullptr ? desk.profile : desk.standard;
+  if (profile == nullptr || !profile->is_generic()) return;
+  std::map<std::uint8_t, session::DriveUnits> asked;
+  for (auto& channel : channels) {
+    if (!drive::is_unit_assumed(channel.target)) continue;
+    if (asked.count(channel.node) == 0)
+      asked.emplace(channel.node, session::DriveUnits(*desk.session, *profile, channel.node));
+    channel.units = asked.at(channel.node);
+  }
+}
+
 /// A number in the unit people think in, and that unit.
 struct Quantity {
   double value = 0;
   std::string_view unit;
 };
 std::optional<Quantity> quantity(const Channel& channel, ByteSpan bytes) {
-  auto meaning = drive::fitted(drive::meaning(channel.target, channel.node), bytes.size());
+  auto meaning = drive::as_answered(drive::meaning(channel.target, channel.node), bytes.size());
+  if (channel.units) channel.units->apply(channel.target, meaning);
   meaning.bridge = channel.bridge;
   const auto type = show::type_of({channel.node, channel.target, {}, Bytes{}}, bytes);
   const auto value = od::decode(type, bytes);
@@ -69,10 +84,12 @@ Value rounded(double number) { return parse_real(formatted("{:.9g}", number)).va
 
 Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> names) {
   Sampler out(desk);
+  show::StandardNames standard(desk);
   for (const auto node : desk.nodes)
     for (const auto& name : names) {
-      const auto target = drive::resolve(desk.profile, name);
+      auto target = drive::resolve(desk.profile, name, drive::Match::part);
       if (!target) return fail(target.error());
+      target = standard.named(node, *target);
       if (const auto agreed = show::confirm_unlisted(desk, node, std::span(&*target, 1)); !agreed)
         return fail(agreed.error());
       auto label = desk.chinese ? target->label_zh() : target->label();
@@ -80,6 +97,7 @@ Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> nam
       out.channels_.push_back({node, *target, std::move(label), desk.nodes.size() > 1});
     }
   add_bridges(desk, out.channels_);
+  add_own_units(desk, out.channels_);
   out.begin_hearing();
   return out;
 }

@@ -15,9 +15,10 @@ namespace servoctl::traffic {
 struct Channel {
   std::uint8_t node = 0;
   drive::Target target;
-  std::string name;                          ///< `Statusword`
-  bool several_nodes = false;                ///< The name alone does not tell which it is.
-  std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
+  std::string name;                               ///< `Statusword`
+  bool several_nodes = false;                     ///< The name alone does not tell which it is.
+  std::optional<drive::Bridge> bridge = {};       ///< What the drive's own measures say of the unit.
+  std::optional<session::DriveUnits> units = {};  ///< As show::Reading::units.
 };
 
 /// A value of a channel.

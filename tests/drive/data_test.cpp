@@ -22,6 +22,7 @@ class DriveData : public testing::TestWithParam<std::string> {
     auto loaded = load_profile(GetParam(), kFolders);
     ASSERT_TRUE(loaded) << loaded.error().message;
     profile = std::move(*loaded);
+    if (profile.made_of_dictionary) profile.parameters.clear();  // These tests are about tables.
   }
   Profile profile;
 };

@@ -113,6 +113,7 @@ class Quotes : public testing::TestWithParam<Manual> {
       for (const auto& e : object.entries)
         add("objects", fmt::format("0x{:04X}:{:02X}", e.address.index, e.address.sub),
             !e.note.empty() || !e.labels.empty(), e.doubts);
+    if (profile.made_of_dictionary) profile.parameters.clear();  // Its objects were added.
     for (const auto& p : profile.parameters)
       add("params", p.id, !p.note.empty() || !p.note_zh.empty() || !p.labels.empty(), p.doubts);
     for (const auto& f : profile.faults)

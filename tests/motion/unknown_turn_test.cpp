@@ -64,7 +64,11 @@ TEST(UnknownTurn, NeedsSpeedAndLimitWhereNothingTellsTheWorst) {
   // Pn0462: the gear of the resolution is none that the manual explains.
   ASSERT_TRUE(
       bench.session->download(1, {0x2002, 0x3F}, store_le(2, bench.drive().value({0x2002, 0x3F}).size())));
-  expect_refused(plan_of(bench, home_at_own_speeds(), plan_home), "no speed given");
+  // The speeds of homing are the drive's own, and are compared with the limit.
+  expect_refused(plan_of(bench, home_at_own_speeds(), plan_home), "no safe speed is known");
+  bench.options.speed_limit = "1310720inc/s";
+  EXPECT_TRUE(plan_of(bench, home_at_own_speeds(), plan_home));
+  bench.options.speed_limit.clear();
   Move move;
   move.target = "1000inc";
   expect_refused(plan_of(bench, move, plan_move), "no speed given");

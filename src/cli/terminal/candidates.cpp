@@ -137,7 +137,7 @@ void Candidates::add_kind(const command::Command* command, const command::Parame
       return add_objects();
     case Kind::parameter:
       if (command != nullptr && command->path == "param set") return add_assignment(before);
-      return add_panel_parameters();
+      return add_panel_parameters(true);
     case Kind::value:
       if (!before.empty()) return add_values_of(before.back());
       break;

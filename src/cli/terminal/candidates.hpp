@@ -64,7 +64,7 @@ class Candidates {
                 const std::vector<std::string>& before);
   void add_objects();
   void add_addresses();
-  void add_panel_parameters();
+  void add_panel_parameters(bool also_placed);
   void add_assignment(const std::vector<std::string>& before);
   void add_topics(const std::vector<std::string>& before);
   void add_cells(std::size_t begin);

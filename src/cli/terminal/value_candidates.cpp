@@ -90,7 +90,7 @@ void Candidates::add_objects() {
   const auto* known = profile();
   if (known == nullptr) return;
   if (begins_as_number(begun_)) return add_addresses();
-  add_panel_parameters();
+  add_panel_parameters(false);
   const auto group = begin_group(Candidate::Group::objects);
   for (const auto& object : known->dictionary.objects())
     for (const auto& entry : object.entries)
@@ -116,11 +116,13 @@ void Candidates::add_addresses() {
   begin_group(group);
 }
 
-void Candidates::add_panel_parameters() {
+/// Those without a number of their own stand among the objects too.
+void Candidates::add_panel_parameters(bool also_placed) {
   const auto* known = profile();
   if (known == nullptr) return;
   const auto group = begin_group(Candidate::Group::parameters);
   for (const auto& parameter : known->parameters) {
+    if (parameter.placed && !also_placed) continue;
     const auto* entry = mapped_ && parameter.object ? known->dictionary.find(*parameter.object) : nullptr;
     if (mapped_ && (entry == nullptr || !may_stand(*entry))) continue;
     add(parameter.id, name_in(chinese_, parameter.name, parameter.name_zh));
@@ -134,7 +136,7 @@ void Candidates::add_assignment(const std::vector<std::string>& before) {
   if (before.size() == 1 && before.front().find('=') == std::string::npos)
     return add_values_of(before.front());
   const auto equals = begun_.find('=');
-  if (equals == std::string::npos) return add_panel_parameters();
+  if (equals == std::string::npos) return add_panel_parameters(true);
   auto value = behind(equals + 1);
   value.add_values_of(begun_.substr(0, equals));
   take_behind(equals + 1, std::move(value));

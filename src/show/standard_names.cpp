@@ -1,0 +1,46 @@
+#include "show/standard_names.hpp"
+
+#include "drive/standard_objects.hpp"
+
+namespace servoctl::show {
+namespace {
+
+constexpr std::uint16_t kCommunicationFirst = 0x1000;
+constexpr std::uint16_t kCommunicationLast = 0x1FFF;
+constexpr std::uint16_t kProfileFirst = 0x6000;
+/// Low word of 1000h (CiA 402-2, device type).
+constexpr std::uint64_t kDriveProfileNumber = 0x0192;
+
+}  // namespace
+
+drive::Target StandardNames::at(std::uint8_t node, ObjectAddress address) {
+  if (desk_->profile != nullptr || desk_->standard == nullptr)
+    return drive::target_at(desk_->profile, address);
+  const bool of_301 = address.index >= kCommunicationFirst && address.index <= kCommunicationLast;
+  const bool known = of_301 || (address.index >= kProfileFirst && is_drive(node));
+  return drive::target_at(known ? desk_->standard : nullptr, address);
+}
+
+drive::Target StandardNames::named(std::uint8_t node, const drive::Target& target) {
+  return target.entry == nullptr && target.parameter == nullptr && target.unlisted.empty()
+             ? at(node, target.address)
+             : target;
+}
+
+bool StandardNames::is_drive(std::uint8_t node) {
+  const auto known = drives_.find(node);
+  if (known != drives_.end()) return known->second;
+  auto& session = *desk_->session;
+  bool out = false;
+  if (const auto* identity = session.identities().find(node, session.watch().boots(node));
+      identity != nullptr && identity->device_type) {
+    out = (*identity->device_type & 0xFFFFU) == kDriveProfileNumber;
+  } else if (session.modbus() == nullptr) {
+    const auto type = session.upload(node, objects::kDeviceType);
+    out = type && (load_le(*type) & 0xFFFFU) == kDriveProfileNumber;
+  }
+  drives_.emplace(node, out);
+  return out;
+}
+
+}  // namespace servoctl::show
