@@ -181,10 +181,8 @@ Result<Value> run_decode(Context& context, const Arguments& arguments) {
 
 constexpr Example kDecodeExamples[] = {
     {"decode session.log -d gsd600", "a recording in words"},
-    {"decode table.csv --columns time:ms,-,id:hex,len,data", "a table whose header names no columns"},
     {"decode session.log --summary -d 3=gsd600,4=da200", "a mixed cabinet as a whole"},
     {"decode session.log --around emcy", "what happened before and after each emergency"},
-    {"decode trace.trc --object 0x6040 -o jsonl", "the frames with the controlword, for a script"},
 };
 
 }  // namespace

@@ -121,12 +121,13 @@ class WatchingValues {
       writer_.add_line(line);
   }
 
-  static std::string text_of(const traffic::Channel& channel, const traffic::Sample& sample) {
+  std::string text_of(const traffic::Channel& channel, const traffic::Sample& sample) const {
     return channel.name + " " + (sample.bytes ? text_of(decoded(channel, sample)) : "-");
   }
 
-  static std::string text_of(const show::DecodedValue& value) {
-    const auto* label = std::get_if<std::string>(&value.label.data());
+  std::string text_of(const show::DecodedValue& value) const {
+    const bool chinese = context_->chinese && !value.label_zh.is_null();
+    const auto* label = std::get_if<std::string>(&(chinese ? value.label_zh : value.label).data());
     return label == nullptr ? value.text : value.text + " " + *label;
   }
 

@@ -4,6 +4,8 @@
 
 namespace servoctl {
 
-std::string formatted_of(fmt::string_view text, fmt::format_args values) { return fmt::vformat(text, values); }
+std::string formatted_of(fmt::string_view text, fmt::format_args values) {
+  return fmt::vformat(text, values);
+}
 
 }  // namespace servoctl

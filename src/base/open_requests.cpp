@@ -86,7 +86,8 @@ OpenRequests::Fit OpenRequests::settle_refusal(const std::function<bool(AnswerFo
                                                TimePoint now, bool awaited) {
   const auto oldest = std::find_if(open_.begin(), open_.end(),
                                    [&](const Request& request) { return is_refused(request.answer); });
-  // The request of a refusal that comes twice is no longer open: the second may be a copy, or for the next one.
+  // The request of a refusal that comes twice is no longer open: the second may be a copy, or for the next
+  // one.
   const bool may_be_copy = last_ && last_->refuses && is_refused(last_->form);
   const bool again = may_be_copy && repeats(*last_, now);
   if (oldest == open_.end()) return look_for_copy(Fit::none, again);

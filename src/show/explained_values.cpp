@@ -80,7 +80,7 @@ ValueWords meaning_of(const drive::Profile& profile, const drive::Target& target
   if (target.address == objects::kErrorCode)
     return words_of_code(profile, static_cast<std::uint16_t>(load_le(bytes)));
   if (auto words = value_words(target.address, load_le(bytes)); !words.english.empty()) return words;
-  const auto decoded = decode_value(Reading{1, target, std::nullopt, bytes, {}, false}, bytes);
+  const auto decoded = decode_value(Reading{1, target, std::nullopt, bytes}, bytes);
   const auto* label = std::get_if<std::string>(&decoded.label.data());
   const auto* label_zh = std::get_if<std::string>(&decoded.label_zh.data());
   if (label == nullptr || label->empty()) return {decoded.text, decoded.text};
@@ -146,7 +146,7 @@ void add_value(const TopicQuery& query, const Library& library, std::vector<Expl
     return each.topic.value == asked->value && each.topic.object == target->address;
   });
   if (told) return;
-  const auto bytes = bytes_of(asked->value, size_of(Reading{1, *target, std::nullopt, Bytes{}, {}, false}));
+  const auto bytes = bytes_of(asked->value, size_of(Reading{1, *target, std::nullopt, Bytes{}}));
   if (bytes.empty()) return;
   const auto number = formatted("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
   const auto meaning = meaning_of(profile, *target, bytes);

@@ -21,7 +21,7 @@ std::optional<can::Frame> frame_in(std::string_view text) {
 
 /// In one language, as `decode` says it, with the node before it.
 std::string words_of_frame(const can::Frame& frame, const drive::Profile& profile, bool chinese) {
-  FrameDecoder decoder({&profile, chinese, false});
+  FrameDecoder decoder({.profile = &profile, .chinese = chinese, .fields = false});
   const auto& decoded = decoder.decode(frame);
   std::string out;
   if (decoded.node) {

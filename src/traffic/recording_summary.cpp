@@ -22,7 +22,10 @@ constexpr Duration kStillOpen = std::chrono::seconds(1);
 
 RecordingSummary::RecordingSummary(const show::Desk& desk,
                                    const std::map<std::uint8_t, const drive::Profile*>& families)
-    : desk_(&desk), own_families_(&families), decoder_({desk.profile, desk.chinese, false}) {
+    : desk_(&desk),
+      own_families_(&families),
+      decoder_(
+          {.profile = desk.profile, .standard = desk.standard, .chinese = desk.chinese, .fields = false}) {
   for (const auto& [node, profile] : families) decoder_.set_family(node, profile);
 }
 

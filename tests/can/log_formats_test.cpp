@@ -171,8 +171,8 @@ TEST(LogFormats, WhatNobodyCanTellIsAsked) {
   EXPECT_EQ(strays_of("601 40 41 60 10 10 10 10 10\n", {.columns = &*hex}).open_base, 0U);
   EXPECT_EQ(strays_of("601 40 41 60 00 00 00 00 00\n").assumed_base, 16U);
   EXPECT_EQ(strays_of("1537 40 41 60 00 00 00 00 00\n").assumed_base, 10U) << "11 bits in decimal only";
-  EXPECT_EQ(bare_frames("129 17 129 200 0 0 0 0 0\n"), Frames{"081#1181C80000000000"}) << "as its data";
-  EXPECT_EQ(strays_of("129 17 129 200 0 0 0 0 0\n").assumed_base, 10U);
+  EXPECT_EQ(bare_frames("129 17 12 200 0 0 0 0 0\n"), Frames{"081#110CC80000000000"}) << "as its data";
+  EXPECT_EQ(strays_of("129 17 12 200 0 0 0 0 0\n").assumed_base, 10U);
   EXPECT_EQ(strays_of("081 40 41 60 00 00 00 00 00\n").assumed_base, 0U) << "zeros in front are hexadecimal";
   EXPECT_TRUE(strays_of("Time,ID,Data\n100,0x701,05\n").lacks_unit);
   EXPECT_FALSE(strays_of("Time (ms),ID,Data\n100,0x701,05\n").lacks_unit);
