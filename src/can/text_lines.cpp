@@ -57,8 +57,8 @@ bool TextLines::take_bytes(std::string_view& out, bool& ended) {
 std::string_view TextLines::to_utf8(std::string_view wide) {
   text_.clear();
   for (std::size_t i = 0; i + 1 < wide.size(); i += 2) {
-    const auto first = static_cast<unsigned char>(wide[i]);
-    const auto second = static_cast<unsigned char>(wide[i + 1]);
+    const char32_t first = static_cast<unsigned char>(wide[i]);
+    const char32_t second = static_cast<unsigned char>(wide[i + 1]);
     const char32_t unit = big_ ? first << 8U | second : second << 8U | first;
     // Nothing that is read of a line lies beyond the basic plane.
     append_utf8(unit >= 0xD800 && unit <= 0xDFFF ? U'?' : unit, text_);

@@ -8,6 +8,7 @@
 #include "base/folded.hpp"
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "report/catalogue.hpp"
 #include "show/explanation_parts.hpp"
