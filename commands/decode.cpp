@@ -197,7 +197,7 @@ const Command kDecode{
         "CanKing, BUSMASTER, CANoe and `python-can`, lines of `cansend`, and tables whose header names the "
         "columns (IXXAT, `Vehicle Spy`, SavvyCAN, USBCAN, any CSV), also quoted in a mail; what it is, the "
         "file tells. --columns names the columns of any other table, in their order or by their headings: "
-        "`time date id len data byte type channel ext rtr error`, - for one that does not matter; `:ms`, "
+        "time, date, id, len, data, byte, type, channel, ext, rtr, error, - for one that does not matter; `:ms`, "
         "`:us`, `:hex` and `:dec` say how one is written. Numbers that could be decimal or hexadecimal are "
         "not guessed. One that is cut short or damaged is shown up to there, and the place told; exit code 7. "
         "With -d the objects have their names, units and labels; a mixed cabinet takes a family for each "

@@ -124,7 +124,7 @@ Result<void> check_mode_word(Context& context, const Arguments& arguments) {
 constexpr Example kModeExamples[] = {
     {"mode -n 1 -d gsd600", "the present mode"},
     {"mode pv -n 1 -d gsd600", "profile velocity; only while de-energised"},
-    {"mode -3 -n 1 -d cia402", "a mode of the manufacturer's own, after a question"},
+    {"mode -3 --dry-run -n 1 -d cia402", "what a mode of the manufacturer's own would send"},
 };
 
 }  // namespace

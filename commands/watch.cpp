@@ -94,7 +94,9 @@ class WatchingValues {
         continue;
       }
       const auto value = decoded(channel, sample);
-      view_->set(row, {node, channel.name, text_of(value)}, show::plotted(value.value));
+      const auto label = show::brief_label(value, context_->chinese);
+      view_->set(row, {node, channel.name, label.empty() ? value.text : value.text + " " + label},
+                 value.word ? std::nullopt : show::plotted(value.value));
     }
   }
 
@@ -126,9 +128,8 @@ class WatchingValues {
   }
 
   std::string text_of(const show::DecodedValue& value) const {
-    const bool chinese = context_->chinese && !value.label_zh.is_null();
-    const auto* label = std::get_if<std::string>(&(chinese ? value.label_zh : value.label).data());
-    return label == nullptr ? value.text : value.text + " " + *label;
+    const auto label = show::label_text(value, context_->chinese);
+    return label.empty() ? value.text : value.text + " " + label;
   }
 
   /// Of a sample that has bytes.

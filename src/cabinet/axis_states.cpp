@@ -95,8 +95,7 @@ void AxisStates::look_on(const Bus& bus, std::vector<AxisState>& out) {
   }
   auto& session = **opened;
   // Another drive may be there than the one that the file names.
-  const session::OptionScope checked(session, &session::Options::number_check,
-                                     session::NumberCheck::of_doubtful);
+  const session::OptionScope checked(session, &session::Options::checks_numbers, true);
   std::vector<session::SdoRequest> requests;
   for (const auto* look : mine) {
     if (const auto profile = load_(look->axis->family)) {

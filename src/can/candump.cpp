@@ -157,17 +157,17 @@ std::optional<LogFrame> parse_candump_line(std::string_view line) {
 }
 
 AscLine read_candump(std::string_view line) {
-  using Kind = AscLine::Kind;
-  if (auto logged = parse_log_line(line)) return {Kind::frame, std::move(*logged)};
-  if (auto shown = parse_candump_line(line)) return {Kind::frame, std::move(*shown)};
+  if (auto logged = parse_log_line(line)) return {AscLine::Kind::frame, std::move(*logged)};
+  if (auto shown = parse_candump_line(line)) return {AscLine::Kind::frame, std::move(*shown)};
   const auto text = trim(line);
   if (text.empty() || text.starts_with('#') || text.starts_with("//")) return {};
   if (line.starts_with('\t') && text.find('{') != std::string_view::npos) return {};
-  if (auto sent = parse_cansend(text)) return {Kind::frame, std::move(*sent)};
+  if (auto sent = parse_cansend(text)) return {AscLine::Kind::frame, std::move(*sent)};
   // A remark behind a line of -L.
   if (const auto remark = text.find(" #"); remark != std::string_view::npos)
-    if (auto logged = parse_log_line(text.substr(0, remark))) return {Kind::frame, std::move(*logged)};
-  return {is_candump_fd(line) ? Kind::unsuited : Kind::malformed, {}};
+    if (auto logged = parse_log_line(text.substr(0, remark)))
+      return {AscLine::Kind::frame, std::move(*logged)};
+  return {is_candump_fd(line) ? AscLine::Kind::unsuited : AscLine::Kind::malformed, {}};
 }
 
 bool is_candump_fd(std::string_view line) {

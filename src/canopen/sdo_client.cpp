@@ -179,7 +179,8 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   if (expedited) {
     const std::size_t known = size_ == 0 ? 4 : std::min<std::size_t>(size_, 4);
     std::size_t size = size_indicated ? 4U - (frame.data[0] >> 2U & 0x03U) : known;
-    if (size == 4 && known < size && (sdo_data(frame) >> (known * 8)) == 0) {
+    // Where the sign bit of the smaller one is set, the four bytes may be another number.
+    if (size == 4 && known < size && (sdo_data(frame) >> (known * 8 - 1)) == 0) {
       if (size_indicated) note(SdoHabit::always_four_bytes);
       size = known;
     }
@@ -201,6 +202,12 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
   request_segment(now);
 }
 
+/// Some servers announce the room of a text and send the text. Of more than that a part may be missing.
+bool SdoClient::is_short() const {
+  constexpr std::size_t kRoomOfText = 64;
+  return announced_ && data_.size()<*announced_&& * announced_> kRoomOfText;
+}
+
 void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
   if (command_of(frame) == 0x40 && sdo_object(frame) == object_ && data_.empty())
     return;  // The first answer, twice.
@@ -219,6 +226,11 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
   if (data_.size() > announced_.value_or(kMaxSdoUpload)) {
     abort(sdo_abort::kLength, Errc::protocol,
           formatted("it announced {} bytes and sent {}", announced_.value_or(kMaxSdoUpload), data_.size()));
+    return;
+  }
+  if (last && is_short()) {
+    abort(sdo_abort::kLength, Errc::protocol,
+          formatted("it announced {} bytes and sent {}", *announced_, data_.size()));
     return;
   }
   if (last && announced_ && data_.size() < *announced_) note(SdoHabit::announced_more);

@@ -107,6 +107,7 @@ class SdoClient {
   void check(TimePoint now);
   void on_check(TimePoint now);
   void end_in_doubt();
+  bool is_short() const;
   void on_silence();
   void on_abort(const can::Frame& frame, TimePoint now);
   void begin_wanted_upload(TimePoint now);

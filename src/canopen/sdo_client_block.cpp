@@ -88,13 +88,14 @@ void SdoClient::on_block_upload_end(const can::Frame& frame, TimePoint) {
           "disturbed bus, or the object changed while being read: try again");
     return;
   }
-  if (announced_ && data.size() < *announced_) note(SdoHabit::announced_more);
-  if (announced_ && data.size() > *announced_) {
+  data_ = std::move(data);
+  if (is_short() || (announced_ && data_.size() > *announced_)) {
     abort(sdo_abort::kLength, Errc::protocol,
-          formatted("it announced {} bytes and sent {}", *announced_, data.size()));
+          formatted("it announced {} bytes and sent {}", *announced_, data_.size()));
     return;
   }
-  finish(std::move(data));
+  if (announced_ && data_.size() < *announced_) note(SdoHabit::announced_more);
+  finish(std::exchange(data_, {}));
   tx_ = sdo_segment(kSdoRequest + node_, 0xA1);
 }
 

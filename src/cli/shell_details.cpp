@@ -26,9 +26,8 @@ std::string bytes_text(const Bytes& bytes) {
 
 std::string value_text(const show::Reading& reading, const Bytes& bytes, bool chinese) {
   const auto decoded = show::decode_value(reading, bytes);
-  const auto& words = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
-  const auto* label = std::get_if<std::string>(&words.data());
-  return label == nullptr ? decoded.text : formatted("{} {}", decoded.text, *label);
+  const auto label = show::label_text(decoded, chinese);
+  return label.empty() ? decoded.text : formatted("{} {}", decoded.text, label);
 }
 
 /// The message of an error without the place, which stands before it already.

@@ -37,13 +37,6 @@ bool only_reads(const command::Command& command, const command::Arguments& argum
          command.effect_with(arguments) == Effect::reads && !session.url().starts_with("replay:");
 }
 
-/// Whether the line names the objects that it is about: what it asks for is seen before it is asked.
-bool lists_objects(const command::Command& command, const command::Arguments& arguments) {
-  return std::ranges::any_of(command.parameters, [&](const auto& parameter) {
-    return parameter.kind == command::Kind::object && arguments.has(parameter.name);
-  });
-}
-
 /// A gateway passes on no boot-up: another drive may be at the node since the last line.
 void doubt_unheard(session::Session& session, std::span<const std::uint8_t> nodes) {
   if (session.gateway() == nullptr) return;
@@ -52,27 +45,22 @@ void doubt_unheard(session::Session& session, std::span<const std::uint8_t> node
 
 }  // namespace
 
-/// Drives that must not be asked for what they do not have are found before such a request.
+/// Before anything else is read: finds the drives that must not be asked for what they do not have.
 void Shell::be_wary(Run& run, const command::Arguments& arguments) {
-  using session::NumberCheck;
   auto& session = *run.context.session;
   const auto* profile = run.context.profile;
   auto nodes = run.context.nodes;
   doubt_unheard(session, nodes);
+  const bool any = profile == nullptr || profile->is_generic() || profile->of_file;
+  // Another drive may be there than the one that the user named.
+  session.options().checks_numbers =
+      !any && !run.command->way_out && only_reads(*run.command, arguments, session);
   const bool is_decided = profile != nullptr && drive::has_access_alarms(profile->rules);
-  const bool by_file = profile != nullptr && profile->of_file;
-  const bool any = profile == nullptr || profile->is_generic() || by_file;
-  // A stop goes out before anything is read.
-  const bool reads = !run.command->way_out && only_reads(*run.command, arguments, session);
-  const bool in_time = !by_file && lists_objects(*run.command, arguments);
-  auto& check = session.options().number_check;
-  check = NumberCheck::none;
-  if (reads && !any) check = NumberCheck::of_doubtful;  // Another drive may be there than the user named.
-  if (reads && any && !is_decided && in_time) check = NumberCheck::of_all;
   // Another drive may be there since its boot-up, and what an earlier line named may be wrong.
+  // A stop goes out before anything is read.
   if (is_decided || run.command->way_out)
     nodes.clear();
-  else if (!any || !reads || in_time)
+  else if (!any || !only_reads(*run.command, arguments, session))
     std::erase_if(nodes, [&](std::uint8_t node) { return session.wary_of(node) == nullptr; });
   if (session.modbus() == nullptr) session::consider_numbers(session, nodes);
   if (profile != nullptr) learn_family(session, run.context.nodes, *profile);
@@ -82,9 +70,7 @@ void Shell::be_wary(Run& run, const command::Arguments& arguments) {
 void Shell::tell_contradicted(Run& run) {
   auto* session = run.context.session;
   const auto* profile = run.context.profile;
-  if (session == nullptr || profile == nullptr ||
-      session->options().number_check != session::NumberCheck::of_doubtful)
-    return;
+  if (session == nullptr || profile == nullptr || !session->options().checks_numbers) return;
   std::vector<std::uint8_t> nodes = run.context.nodes;
   std::erase_if(nodes, [&](std::uint8_t node) { return session->wary_of(node) == nullptr; });
   if (nodes.empty()) return;

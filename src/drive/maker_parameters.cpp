@@ -145,7 +145,10 @@ std::vector<od::Parameter> maker_parameters(const od::Dictionary& dictionary) {
       if (entry.type == od::DataType::domain) continue;
       out.push_back(parameter_of(object, entry));
       numbered.push_back(split_number(entry.name));
-      if (numbered.back()) ++uses[canonical_id(numbered.back()->id)];
+      // A name that is a number and nothing else is one as well.
+      const auto name = trim(entry.name);
+      if (numbered.back() || looks_like_number(name))
+        ++uses[canonical_id(numbered.back() ? numbered.back()->id : std::string(name))];
     }
   }
   for (std::size_t i = 0; i < out.size(); ++i) {

@@ -32,8 +32,7 @@ std::vector<const od::Entry*> entries_named(const od::Object& object, const std:
   for (const auto& entry : object.entries) {
     const auto name = name_key(entry.name);
     if (name == part) return {&entry};
-    if (entry.address.sub != 0 && !part.empty() && name.find(part) != std::string::npos)
-      pieces.push_back(&entry);
+    if (entry.address.sub != 0 && has_words(name, {part})) pieces.push_back(&entry);
   }
   return pieces;
 }
@@ -92,14 +91,18 @@ bool is_meant(const od::Parameter& parameter, const std::vector<std::string>& wo
 
 }  // namespace
 
-std::vector<Target> named_wholly(const Profile& profile, std::string_view text) {
+std::vector<Target> named_wholly(const Profile& profile, std::string_view text, Match match) {
   auto out = objects_named(profile, text);
-  if (!out.empty()) return out;
+  // Makers call their parameters as the standard calls its objects: what is written must be meant.
+  const bool all = profile.of_file && match == Match::whole;
+  if (!out.empty() && !all) return out;
   const auto key = name_key(text);
   for (const auto& parameter : profile.parameters)
     if (parameter.object && !key.empty() && name_key(parameter.name) == key)
       add_once(out, profile, *parameter.object);
-  return out.empty() ? entries_and_chinese(profile, text) : out;
+  if (!out.empty() && !all) return out;
+  for (const auto& target : entries_and_chinese(profile, text)) add_once(out, profile, target.address);
+  return out;
 }
 
 std::vector<Target> named_in_part(const Profile& profile, std::string_view text) {

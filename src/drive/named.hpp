@@ -11,7 +11,7 @@ namespace servoctl::drive {
 
 /// What has exactly this name: an object, `object.part of an entry`, an entry, a parameter, in the language
 /// of the data or in Chinese. An object of several entries means each of them.
-std::vector<Target> named_wholly(const Profile& profile, std::string_view text);
+std::vector<Target> named_wholly(const Profile& profile, std::string_view text, Match match);
 
 /// What has all of these words somewhere in its name or number.
 std::vector<Target> named_in_part(const Profile& profile, std::string_view text);

@@ -175,7 +175,7 @@ Result<Target> resolve(const Profile* profile, std::string_view text, Match matc
     return target_at(profile, *parameter->object);
   }
   if (auto target = by_rule(*profile, text)) return *target;
-  auto found = named_wholly(*profile, text);
+  auto found = named_wholly(*profile, text, match);
   if (found.empty())
     if (const auto named = parameters_named(*profile, text, Match::whole); !named.empty())
       return without_object(*named.front());

@@ -1,6 +1,7 @@
 #include "motion/motion_guard.hpp"
 
 #include <algorithm>
+#include <span>
 #include <tuple>
 
 #include "base/format.hpp"
@@ -8,7 +9,6 @@
 #include "canopen/sdo_abort.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/operation_mode.hpp"
-#include "session/fitting_size.hpp"
 
 namespace servoctl::motion {
 namespace {
@@ -76,35 +76,20 @@ Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
   if (rehearsed != nullptr && *rehearsed == data) return {};
   const bool known =
       std::any_of(changed_.begin(), changed_.end(), [&](const Changed& c) { return c.object == object; });
-  if (known) return write(object, in_own_size(object, data));
-  const auto before = session_->upload(node_, object);
+  if (known) return write(object, data);
+  const session::SdoRequest asked{.node = node_, .object = object, .size = data.size()};
+  const auto before = session_->transfer(std::span(&asked, 1)).front();
   if (!before) return fail(before.error());
-  if (const auto fits = learn_size(object, data, before->size()); !fits) return fits;
-  const auto fitting = in_own_size(object, data);
-  if (rehearsed == nullptr && *before == fitting) return {};
-  // Noted first: an answer that is lost may belong to a write that was done.
-  changed_.push_back({object, *before});
-  return write(object, fitting);
-}
-
-Result<void> MotionGuard::learn_size(ObjectAddress object, const Bytes& data, std::size_t held) {
-  const auto what = units_->meaning(object);
-  if (held == data.size() || !what.type_known || !od::is_integer(what.type)) return {};
-  if (!session::in_size(data, what.type, held))
+  // A drive may cut a longer number, and would turn at another speed.
+  if (before->size() != data.size())
     return fail(drive_error(
         Errc::refused, node_, object,
-        formatted("has {} bytes in this drive, not {}: the number does not fit", held, data.size()),
-        "choose a smaller number"));
-  sizes_[object] = held;
-  result_.notes.push_back(formatted("{} has {} bytes in this drive, not {}: it was written in that size",
-                                    to_string(object), held, data.size()));
-  return {};
-}
-
-Bytes MotionGuard::in_own_size(ObjectAddress object, const Bytes& data) const {
-  const auto own = sizes_.find(object);
-  if (own == sizes_.end()) return data;
-  return session::in_size(data, units_->meaning(object).type, own->second).value_or(data);
+        formatted("has {} bytes in this drive, not {} as its data say", before->size(), data.size()),
+        "the data are those of another drive or firmware; the motor was not moved"));
+  if (rehearsed == nullptr && *before == data) return {};
+  // Noted first: an answer that is lost may belong to a write that was done.
+  changed_.push_back({object, *before});
+  return write(object, data);
 }
 
 Result<void> MotionGuard::write(ObjectAddress object, const Bytes& data) {

@@ -96,10 +96,6 @@ class MotionGuard {
   };
 
   Result<void> write(ObjectAddress object, const Bytes& data);
-  /// Notes that the object has another size in this drive than in its data.
-  Result<void> learn_size(ObjectAddress object, const Bytes& data, std::size_t held);
-  /// The number in the size that the object has in this drive.
-  Bytes in_own_size(ObjectAddress object, const Bytes& data) const;
   Result<void> wait_until_awake();
   void rehearse_up(const std::vector<drive::PowerStep>& path);
   void rehearse_end();
@@ -128,8 +124,7 @@ class MotionGuard {
   Power power_;
   session::Protection::Hold hold_;
   std::vector<Changed> changed_;
-  std::map<ObjectAddress, std::size_t> sizes_;  ///< Of objects that have another one than their data say.
-  std::optional<std::int8_t> mode_;             ///< That was chosen for the motion.
+  std::optional<std::int8_t> mode_;  ///< That was chosen for the motion.
   std::optional<WatchdogPlan> watchdog_;
   bool started_ = false;      ///< It was told to become operational.
   bool held_before_ = false;  ///< Process data were exchanged with it in OP already.

@@ -56,8 +56,7 @@ std::optional<session::SdoRequest> MotionGuard::zero_target() const {
   const auto& rules = units_->profile().rules.motion;
   if (!mode_ || (mode_ != rules.velocity && mode_ != rules.torque)) return std::nullopt;
   const auto target = mode_ == rules.velocity ? objects::kTargetVelocity : objects::kTargetTorque;
-  const Bytes zero(od::size_of(units_->meaning(target).type).value_or(4), 0);
-  return session::SdoRequest{node_, target, in_own_size(target, zero)};
+  return session::SdoRequest{node_, target, Bytes(od::size_of(units_->meaning(target).type).value_or(4), 0)};
 }
 
 /// Target to zero, halt where there is one, a quick stop when that does not help, then 07h and 00h.

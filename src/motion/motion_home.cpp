@@ -150,7 +150,7 @@ Result<Bytes> value_of(Motion& motion, ObjectAddress object, const MotionPlan& p
 Result<void> check_method(Motion& motion, MotionPlan& plan) {
   const auto method = value_of(motion, objects::kHomingMethod, plan);
   if (!method) return fail(method.error());
-  const auto meaning = motion.units().meaning(objects::kHomingMethod);
+  const auto meaning = drive::as_answered(motion.units().meaning(objects::kHomingMethod), method->size());
   const auto value = od::decode(meaning.type, *method);
   if (!value) return fail(value.error());
   const auto number = static_cast<std::int64_t>(od::to_double(*value));

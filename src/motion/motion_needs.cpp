@@ -61,7 +61,7 @@ std::optional<NamedObject> missing(const drive::Profile& profile, const MotionNe
 std::uint64_t modes_in_data(const drive::Profile& profile) {
   const auto* entry = profile.dictionary.find(objects::kSupportedModes);
   if (entry == nullptr || !entry->default_value || !profile.of_file) return 0;
-  return static_cast<std::uint64_t>(od::to_double(entry->default_value->value));
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(od::to_double(entry->default_value->value)));
 }
 
 /// Whose modes are known.

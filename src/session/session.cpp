@@ -38,7 +38,7 @@ Session::Session(std::unique_ptr<can::Bus> bus, std::string url, Options options
     : Session(std::make_unique<CanNetwork>(std::move(bus), url), url, std::move(options)) {}
 
 std::vector<Result<Bytes>> Session::transfer(std::span<const SdoRequest> requests) {
-  if (options_.number_check != NumberCheck::none) consider_before(*this, requests);
+  if (options_.checks_numbers) consider_before(*this, requests);
   auto out = TransferRun(*this, requests).run();
   met_loss_ = met_loss_ || std::any_of(out.begin(), out.end(), [](const auto& result) {
                 return !result && result.error().code == Errc::bus;

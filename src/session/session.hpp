@@ -46,13 +46,6 @@ struct SdoRequest {
   bool despite_alarm = false;  ///< Sent although the drive may raise an alarm for it (access_alarm()).
 };
 
-/// Before which requests a drive's numbers decide whether it raises access alarms.
-enum class NumberCheck : std::uint8_t {
-  none,
-  of_doubtful,  ///< Those for objects that some family takes for an alarm: the user named another.
-  of_all,       ///< All but those that no drive takes for one: nobody named a family.
-};
-
 struct Options {
   Duration timeout = std::chrono::milliseconds(500);  ///< Longest wait for one SDO answer.
   std::uint32_t retries = 1;        ///< Further tries of a read that was not answered; never of a write.
@@ -82,9 +75,9 @@ struct Options {
   std::function<void(const Stretch* stretch, TimePoint now)> waiting;
   /// The folders with the families, some of which raise access alarms (consider_numbers()); may be empty.
   std::function<std::span<const std::filesystem::path>()> drive_folders = {};
-  /// Before which requests 1000h and 1018h decide whether the node is a drive that raises access alarms
-  /// (consider_before()).
-  NumberCheck number_check = NumberCheck::none;
+  /// Before the first request that could raise an access alarm, 1000h and 1018h decide whether the node is
+  /// such a drive (consider_before()), whatever family the user named.
+  bool checks_numbers = false;
   /// Told of every transfer that was tried, whatever carried it; may be empty.
   std::function<void(const Exchange&)> exchanged;
   /// As Network::set_ordered(), of this session; may be empty.

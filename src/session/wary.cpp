@@ -50,12 +50,11 @@ void consider_numbers(Session& session, std::span<const std::uint8_t> nodes) {
 
 namespace {
 
-/// Whether the object is one that a drive of some family may not have, and take for an alarm.
+/// Whether the object is one that a drive of some family does not have, and takes for an alarm.
 bool could_raise(Session& session, ObjectAddress object) {
-  if (std::ranges::find(kDecidingNumbers, object) != kDecidingNumbers.end() || drive::stops_a_drive(object))
+  if (std::ranges::find(kDecidingNumbers, object) != kDecidingNumbers.end() || drive::stops_a_drive(object) ||
+      session.harmless().contains(object))
     return false;
-  if (session.options().number_check == NumberCheck::of_all) return true;
-  if (session.harmless().contains(object)) return false;
   const auto folders = session.options().drive_folders();
   for (const auto& family : drive::find_families(folders)) {
     if (drive::alarm_rules(family) == nullptr) continue;

@@ -28,8 +28,8 @@ void consider_numbers(Session& session, const Identity& numbers);
 /// Nodes that answer none of them are left as they are.
 void consider_numbers(Session& session, std::span<const std::uint8_t> nodes);
 
-/// The same, of the nodes that a request could raise an alarm on and for which no family is known, as far as
-/// Options::number_check says: the data of some family with access alarms may lack its object.
+/// The same, of the nodes that a request could raise an alarm on: the data of some family with access alarms
+/// lack its object, and no family is known for the node (Options::checks_numbers).
 void consider_before(Session& session, std::span<const SdoRequest> requests);
 
 /// Session::be_wary() of the family that the user named, if it has access alarms. If it is a file of the

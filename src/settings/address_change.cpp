@@ -40,7 +40,7 @@ Result<void> add_write(show::Desk& desk, AddressChange& change, const std::strin
   if (!target) return fail(target.error());
   auto present = desk.session->upload(change.node, target->address);
   if (!present) return fail(present.error());
-  const auto as_held = drive::as_answered(drive::meaning(*target, change.node), present->size());
+  const auto as_held = drive::fitted(drive::meaning(*target, change.node), present->size());
   const auto learned = learned_meaning(change.node, *target, as_held, *present);
   if (!learned)
     return fail(drive_error(Errc::refused, change.node, target->address,

@@ -43,7 +43,7 @@ void write_in_own_size(show::Desk& desk, std::vector<Change>& changes,
   std::set<std::size_t> sized;
   for (;;) {
     std::vector<std::size_t> again;
-    bool found = false;
+    std::set<std::uint8_t> nodes;  // What was skipped on others stays so: theirs refused for another reason.
     for (std::size_t i = 0; i < changes.size(); ++i) {
       auto& change = changes[i];
       if (!was_tried(written[i], change)) {
@@ -54,9 +54,10 @@ void write_in_own_size(show::Desk& desk, std::vector<Change>& changes,
       if (!sized.insert(i).second || !take_own_size(desk, change, written[i].error())) continue;
       requests[i].data = change.data;
       again.push_back(i);
-      found = true;
+      nodes.insert(change.node);
     }
-    if (!found) return;
+    if (nodes.empty()) return;
+    std::erase_if(again, [&](std::size_t i) { return !nodes.contains(changes[i].node); });
     std::vector<session::SdoRequest> open;
     for (const auto i : again) open.push_back(requests[i]);
     auto done = session::write_all(*desk.session, open, read_back);

@@ -22,8 +22,7 @@ bool is_contradicted(const Desk& desk, std::uint8_t node) {
 
 Result<void> confirm_alarms(const Desk& desk, std::span<session::SdoRequest> requests) {
   auto& session = *desk.session;
-  if (session.options().number_check != session::NumberCheck::none)
-    session::consider_before(session, requests);
+  if (session.options().checks_numbers) session::consider_before(session, requests);
   const auto alarm_of = [&](const session::SdoRequest& request) {
     return session::access_alarm(session, request.node, request.object);
   };

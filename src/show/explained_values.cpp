@@ -48,6 +48,16 @@ Bytes bytes_of(std::int64_t value, std::size_t size) {
   return out;
 }
 
+/// A text in both languages.
+struct Both {
+  std::string english;
+  std::string chinese;
+};
+
+Both words_in_both(ObjectAddress object, std::uint64_t value) {
+  return {value_words(object, value, false), value_words(object, value, true)};
+}
+
 /// The class of an error code that no list has: 7580h is of 7500h (CiA 402-1, error codes).
 const drive::Fault* class_of_code(const drive::Profile& profile, std::uint16_t code) {
   for (const unsigned mask : {0xFFF0U, 0xFF00U, 0xF000U}) {
@@ -65,7 +75,7 @@ const drive::Fault* class_of_code(const drive::Profile& profile, std::uint16_t c
 }
 
 /// A code of 603Fh that the family lists, or its class.
-ValueWords words_of_code(const drive::Profile& profile, std::uint16_t code) {
+Both words_of_code(const drive::Profile& profile, std::uint16_t code) {
   for (const auto& fault : profile.faults)
     if (fault.code == code) return {fault.name, fault.name_zh.empty() ? fault.name : fault.name_zh};
   const auto* fault = class_of_code(profile, code);
@@ -77,10 +87,10 @@ ValueWords words_of_code(const drive::Profile& profile, std::uint16_t code) {
 }
 
 /// What the bytes mean: the state of a statusword, a label, a number in its unit.
-ValueWords meaning_of(const drive::Profile& profile, const drive::Target& target, const Bytes& bytes) {
+Both meaning_of(const drive::Profile& profile, const drive::Target& target, const Bytes& bytes) {
   if (target.address == objects::kErrorCode)
     return words_of_code(profile, static_cast<std::uint16_t>(load_le(bytes)));
-  if (auto words = value_words(target.address, load_le(bytes)); !words.english.empty()) return words;
+  if (auto words = words_in_both(target.address, load_le(bytes)); !words.english.empty()) return words;
   const auto decoded = decode_value(Reading{1, target, std::nullopt, bytes}, bytes);
   const auto* label = std::get_if<std::string>(&decoded.label.data());
   const auto* label_zh = std::get_if<std::string>(&decoded.label_zh.data());
@@ -131,7 +141,7 @@ bool is_named(const drive::Target& target, const drive::Profile& profile, const 
           subject.names(object->name) || subject.names(drive::entry_name(*object, *target.entry)));
 }
 
-void add_row(drive::Topic& topic, std::string_view head, ValueWords text) {
+void add_row(drive::Topic& topic, std::string_view head, Both text) {
   topic.rows.push_back({{std::string(head)}, std::move(text.english), std::move(text.chinese), topic.line});
 }
 
@@ -186,8 +196,8 @@ void add_number(const TopicQuery& query, const drive::Profile& profile, std::vec
   topic.line = "CiA 402-2, 8.4";
   if (auto code = words_of_code(profile, word); !code.english.empty())
     add_row(topic, "0x603F", std::move(code));
-  add_row(topic, "0x6041", value_words(objects::kStatusword, word));
-  add_row(topic, "0x6040", value_words(objects::kControlword, word));
+  add_row(topic, "0x6041", words_in_both(objects::kStatusword, word));
+  add_row(topic, "0x6040", words_in_both(objects::kControlword, word));
   if (!hex) std::rotate(topic.rows.begin(), topic.rows.end() - 2, topic.rows.end());
   out.push_back({std::move(topic), Found::value});
 }

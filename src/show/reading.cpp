@@ -128,11 +128,10 @@ List reading_row(const Desk& desk, const Reading& reading) {
   const bool told = drive::meaning(reading.target, reading.node).bits &&
                     std::holds_alternative<std::uint64_t>(decoded.raw.data());
   if (number && !told) hex = formatted("0x{:0{}X}", load_le(bytes), bytes.size() * 2);
-  const auto label = chinese && !decoded.label_zh.is_null() ? decoded.label_zh : decoded.label;
+  const auto label = label_text(decoded, chinese);
   row.insert(row.end(), {Value(decoded.text), Value(decoded.type), decoded.value, decoded.raw,
-                         report::text_or_null(decoded.unit), decoded.encoding, decoded.familiar,
-                         label.is_null() ? Value("") : label, decoded.label, hex.is_null() ? Value("") : hex,
-                         Value(to_hex(bytes)), Value()});
+                         report::text_or_null(decoded.unit), decoded.encoding, decoded.familiar, Value(label),
+                         decoded.label, hex.is_null() ? Value("") : hex, Value(to_hex(bytes)), Value()});
   return row;
 }
 
@@ -199,11 +198,21 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
     out.label_zh = report::text_or_null(label->label_zh);
   } else if (const auto* word = std::get_if<std::uint64_t>(&*value);
              word != nullptr && reading.target.entry != nullptr) {
-    const auto words = value_words(reading.target.address, *word);
-    out.label = report::text_or_null(words.english);
-    out.label_zh = report::text_or_null(words.chinese);
+    out.label = report::text_or_null(value_words(reading.target.address, *word, false));
+    if (!out.label.is_null()) out.word = WordOfObject{reading.target.address, *word};
   }
   return out;
+}
+
+std::string label_text(const DecodedValue& value, bool chinese) {
+  if (chinese && value.word) return value_words(value.word->object, value.word->value, true);
+  const auto& label = chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
+  const auto* text = std::get_if<std::string>(&label.data());
+  return text == nullptr ? std::string() : *text;
+}
+
+std::string brief_label(const DecodedValue& value, bool chinese) {
+  return value.word ? value_head(value.word->object, value.word->value, chinese) : label_text(value, chinese);
 }
 
 FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& value) {

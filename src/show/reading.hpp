@@ -24,6 +24,12 @@ struct Reading {
   bool one_of_many = false;  ///< Of a record or a pattern: that the drive refuses it is an answer.
 };
 
+/// A word of bits, and the object that holds it.
+struct WordOfObject {
+  ObjectAddress object;
+  std::uint64_t value = 0;
+};
+
 /// The value of an object, taken apart for a reader and for JSON.
 struct DecodedValue {
   report::Value value;     ///< In its unit.
@@ -35,9 +41,15 @@ struct DecodedValue {
       familiar;      ///< `{"value":90,"unit":"deg"}`: in the unit people think in; null when there is none.
   std::string text;  ///< What a person reads: number and unit; the beginning of a long value.
   std::string type;
-  report::Value encoding;  ///< `f32`, `f32hi` or null.
+  report::Value encoding;                 ///< `f32`, `f32hi` or null.
+  std::optional<WordOfObject> word = {};  ///< Where value_words() tell what it means.
 };
 DecodedValue decode_value(const Reading& reading, ByteSpan bytes);
+
+/// The label, or what the bits of a word mean; empty where there is none.
+std::string label_text(const DecodedValue& value, bool chinese);
+/// The same for where there is little room: without the bits.
+std::string brief_label(const DecodedValue& value, bool chinese);
 
 /// The value in the unit people think in, as text (`90 deg`) and as a record; empty and null without one.
 struct FamiliarValue {

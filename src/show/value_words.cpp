@@ -23,14 +23,13 @@ ObjectAddress of_first_axis(ObjectAddress object) {
   return {static_cast<std::uint16_t>(kFirstAxis + (object.index - kFirstAxis) % kAxisStep), object.sub};
 }
 
-ValueWords register_words(std::uint64_t value) {
+std::string register_words(std::uint64_t value, drive::Chinese chinese) {
   constexpr unsigned kBits = 8;
-  ValueWords out;
+  std::string out;
   for (unsigned bit = 0; bit < kBits; ++bit) {
     if ((value >> bit & 1U) == 0) continue;
     const auto word = canopen::error_register_text(static_cast<std::uint8_t>(1U << bit));
-    append(out.english, word);
-    append(out.chinese, std::string(report::chinese_word(word)), "，");
+    append(out, chinese != nullptr ? std::string(chinese(word)) : word, chinese != nullptr ? "，" : ", ");
   }
   return out;
 }
@@ -46,18 +45,27 @@ std::string mode_words(std::uint64_t modes) {
 
 }  // namespace
 
-ValueWords value_words(ObjectAddress object, std::uint64_t value) {
+std::string value_words(ObjectAddress object, std::uint64_t value, bool chinese) {
   constexpr std::int8_t kUnknownMode = 0;
+  const drive::Chinese in_chinese = chinese ? report::chinese_word : nullptr;
   const auto word = static_cast<std::uint16_t>(value);
   const auto first = of_first_axis(object);
-  if (first == objects::kStatusword)
-    return {drive::statusword_words(word, kUnknownMode),
-            drive::statusword_words(word, kUnknownMode, report::chinese_word)};
-  if (first == objects::kControlword)
-    return {drive::controlword_words(word, kUnknownMode),
-            drive::controlword_words(word, kUnknownMode, report::chinese_word)};
-  if (first == objects::kSupportedModes) return {mode_words(value), mode_words(value)};
-  return object == objects::kErrorRegister ? register_words(value) : ValueWords{};
+  if (first == objects::kStatusword) return drive::statusword_words(word, kUnknownMode, in_chinese);
+  if (first == objects::kControlword) return drive::controlword_words(word, kUnknownMode, in_chinese);
+  if (first == objects::kSupportedModes) return mode_words(value);
+  return object == objects::kErrorRegister ? register_words(value, in_chinese) : std::string();
+}
+
+std::string value_head(ObjectAddress object, std::uint64_t value, bool chinese) {
+  // Bits that make the state or the command, and no others.
+  constexpr std::uint64_t kStateBits = 0x006F;
+  constexpr std::uint64_t kCommandBits = 0x008F;
+  const auto first = of_first_axis(object);
+  if (first == objects::kStatusword) {
+    const auto state = drive::decode_state(static_cast<std::uint16_t>(value & kStateBits));
+    return std::string(chinese ? drive::name_zh(state) : drive::name(state));
+  }
+  return value_words(object, first == objects::kControlword ? value & kCommandBits : value, chinese);
 }
 
 }  // namespace servoctl::show

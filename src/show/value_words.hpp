@@ -7,15 +7,12 @@
 
 namespace servoctl::show {
 
-/// What a value means, in both languages; both are empty where nothing is known.
-struct ValueWords {
-  std::string english;
-  std::string chinese;
-};
+/// What a value means: the state and the bits of a statusword or controlword of any axis (CiA 402-2), the
+/// bits of the error register (1001h, CiA 301) and of the supported drive modes (6502h). Bits that depend on
+/// the mode of operation are told by their numbers. Empty where nothing is known.
+std::string value_words(ObjectAddress object, std::uint64_t value, bool chinese);
 
-/// The state and the bits of a statusword or controlword of any axis (CiA 402-2), the bits of the error
-/// register (1001h, CiA 301) and of the supported drive modes (6502h). Bits that depend on the mode of
-/// operation are told by their numbers.
-ValueWords value_words(ObjectAddress object, std::uint64_t value);
+/// The same without bits: of a statusword the state, of a controlword the command.
+std::string value_head(ObjectAddress object, std::uint64_t value, bool chinese);
 
 }  // namespace servoctl::show

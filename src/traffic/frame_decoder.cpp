@@ -285,7 +285,7 @@ void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Targ
   // Some servers answer with four bytes for whatever is smaller, as canopen::SdoHabit says.
   auto data = *step.data;
   const auto size = show::size_of(reading);
-  if (size != 0 && size < 4 && data.size() == 4 && load_le(data) >> (size * 8) == 0) data.resize(size);
+  if (size != 0 && size < 4 && data.size() == 4 && load_le(data) >> (size * 8 - 1) == 0) data.resize(size);
   // A unit that the data only assume is not the drive's.
   static const session::DriveUnits kNone;
   const auto* family = family_of(*out_.node);

@@ -49,7 +49,7 @@ def what_is_read_and_written():
     check("the result is the same", (out, code) == (plain[0], plain[2]))
     check("without -v nothing is told", plain[1] == "")
     check("each transfer is told once", told.count("object 0x1001:0: read in") == 1)
-    is_told("a name and a value", r"^detail: node 1, object 0x6041:0 \(Statusword\): read in \d+\.\d ms: 0x0270 \(bytes: 70 02\)$",
+    is_told("a name and a value", r"^detail: node 1, object 0x6041:0 \(Statusword\): read in \d+\.\d ms: 0x0270 switch on disabled \(voltage enabled, remote\) \(bytes: 70 02\)$",
             run("read", "statusword", *CAN, "1", "-d", "gsd600", "-v")[1])
     is_told("a label", r"\(Modes of operation display\): read in .* ms: 1 Profile position \(pp\) \(bytes: 01\)$",
             run("read", "0x6061", *CAN, "1", "-d", "gsd600", "-v")[1])
@@ -63,7 +63,7 @@ def what_is_read_and_written():
     is_told("a refused write", r"^detail: node 1, object 0x1000:0: write of 1 \(bytes: 01 00 00 00\) failed after .* ms: refused: ",
             run("write", "0x1000", "1", "--type", "u32", *CAN, "1", "-v")[1])
     told = run("jog", "60rpm", "--for", "100ms", "-d", "gsd600", "--turn", "131072", "-y", *CAN, "1", "-v")[1]
-    is_told("the way out of a motion", r"^detail: node 1, object 0x6040:0 \(Controlword\): written in .* ms: 0x0007 \(bytes: 07 00\)$", told)
+    is_told("the way out of a motion", r"^detail: node 1, object 0x6040:0 \(Controlword\): written in .* ms: 0x0007 switch on \(bytes: 07 00\)$", told)
     check("nothing is written in a dry run", "written in" not in
           run("write", "0x1017", "500", "--type", "u16", *CAN, "1", "-v", "--dry-run")[1])
 
@@ -125,7 +125,7 @@ def in_other_forms():
     check("JSON stays JSON", json.loads(out)["ok"] and "detail" not in out and "detail: " in told)
     told = run("read", "statusword", *CAN, "1", "-d", "gsd600", "-v", "--lang", "zh")[1]
     is_told("Chinese", r"^详情：总线 sim:gsd600@1 已打开（CAN）；等待应答最长 500 ms", told)
-    is_told("Chinese", r"^详情：节点 1，对象 0x6041:0（状态字.*）：读取用时 \d+\.\d ms：0x0270（字节：70 02）$", told)
+    is_told("Chinese", r"^详情：节点 1，对象 0x6041:0（状态字.*）：读取用时 \d+\.\d ms：0x0270 伺服无故障（.*）（字节：70 02）$", told)
     check(f"nothing of it is English: {told}", not re.search(r"^详情：.*(?<!-)\b(read|object|family|bus|bytes)\b", told, re.M))
     told = run("read", "0x5999", *CAN, "1", "-v", "--lang", "zh")[1]
     is_told("an abort in Chinese", r"^详情：节点 1，对象 0x5999:0：读取失败，历时 .* ms，尝试次数 1：[^a-z]*（中止码 0x06020000）", told)

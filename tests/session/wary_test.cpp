@@ -154,7 +154,7 @@ TEST_F(Wary, IdentificationAsksOneDa200ForItsNumbersOnly) {
 
 TEST_F(Wary, ANamedFamilyIsCheckedBeforeTheFirstRequestThatCouldRaiseAnAlarm) {
   auto session = open("da200");
-  session.options().number_check = NumberCheck::of_doubtful;
+  session.options().checks_numbers = true;
   asked.clear();
   EXPECT_TRUE(session.upload(1, objects::kStatusword).has_value());
   EXPECT_TRUE(session.upload(1, objects::kPositionActual).has_value());
@@ -164,19 +164,6 @@ TEST_F(Wary, ANamedFamilyIsCheckedBeforeTheFirstRequestThatCouldRaiseAnAlarm) {
   EXPECT_EQ(session.upload(1, kNotOfDa200).error().abort_code, canopen::sdo_abort::kNoObject);
   EXPECT_EQ(asked,
             (std::vector<ObjectAddress>{objects::kDeviceType, objects::kVendorId, objects::kProductCode}));
-}
-
-TEST_F(Wary, ADriveOfNoNamedFamilyIsAskedForItsNumbersBeforeAnythingButItsState) {
-  auto session = open("da200");
-  session.options().number_check = NumberCheck::of_all;
-  asked.clear();
-  EXPECT_TRUE(session.upload(1, objects::kStatusword).has_value());
-  EXPECT_EQ(asked, std::vector<ObjectAddress>{objects::kStatusword}) << "no drive takes it for an alarm";
-  EXPECT_TRUE(session.upload(1, objects::kPositionActual).has_value());
-  EXPECT_FALSE(session.upload(1, kNotOfDa200).has_value());
-  EXPECT_EQ(asked, (std::vector<ObjectAddress>{objects::kStatusword, objects::kDeviceType, objects::kVendorId,
-                                               objects::kProductCode, objects::kPositionActual}))
-      << "once, and never for what it lacks";
 }
 
 /// Most families have none: their rules are only searched for the words.
