@@ -219,6 +219,13 @@ Result<std::string> recording_of(const Arguments& arguments, const can::ReadOpti
   const auto first = can::for_each_frame(
       *text, [](const can::LogFrame&) { return false; }, read);
   if (const auto base = traffic::check_base_is_certain(file, first); !base) return fail(base.error());
+  // A heading is no proof of what a column holds, and what is misread could move a motor.
+  if (first.of_table && read.columns == nullptr)
+    return fail(
+        Errc::refused,
+        formatted("{}: frames of a table or log of another tool are sent only where its columns are named",
+                  file),
+        "say what its columns are, `--columns time:s,id:hex,len,data:hex`; `decode` shows its frames");
   if (const auto one = traffic::check_channel(file, *text, channel_of(arguments), read); !one)
     return fail(one.error());
   return text;

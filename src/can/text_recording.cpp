@@ -71,6 +71,7 @@ class LineReader {
     const auto last = line.find_last_of(" \t,;#");
     const auto word = last == std::string_view::npos ? line : line.substr(last + 1);
     const bool half_byte = word.size() == 1 && word.find_first_of("0123456789abcdefABCDEF") == 0;
+    if (form_ == Form::asc || form_ == Form::trc) return false;
     if (frame.error || frame.remote) return true;
     if (half_byte || (form_ == Form::columns && numbers_.data_base != 16)) return false;
     return length_told_ || frame.size == frame.data.size() || seen.has(frame);
@@ -159,6 +160,7 @@ class TextReader {
       out_.open_base = choice_.header() + 1;
       return std::move(out_);
     }
+    out_.of_table = rows;
     if (rows && choice_.assumed()) out_.assumed_base = numbers.id_base;
     LineReader reader(choice_);
     TextLine line;
