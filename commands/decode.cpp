@@ -197,17 +197,18 @@ const Command kDecode{
         "CanKing, BUSMASTER, CANoe and `python-can`, lines of `cansend`, and tables whose header names the "
         "columns (IXXAT, `Vehicle Spy`, SavvyCAN, USBCAN, any CSV), also quoted in a mail; what it is, the "
         "file tells. --columns names the columns of any other table, in their order or by their headings: "
-        "time, date, id, len, data, byte, type, channel, ext, rtr, error, - for one that does not matter; `:ms`, "
-        "`:us`, `:hex` and `:dec` say how one is written. Numbers that could be decimal or hexadecimal are "
-        "not guessed. One that is cut short or damaged is shown up to there, and the place told; exit code 7. "
-        "With -d the objects have their names, units and labels; a mixed cabinet takes a family for each "
-        "node, -d 3=gsd600,4-6=da200, or those of --cabinet FILE; -n limits the output to these nodes (and "
-        "frames without a node), --service and --object to such frames. --clock shows date and time of day, "
-        "with Z if they are UTC, else as the recording computer had them. PDOs are decoded by the mapping "
-        "read or written in the recording itself, else by the family's factory mapping. `-o jsonl` gives one "
-        "document per frame. `-` reads a pipe, and shows each frame when it comes. --summary shows the "
-        "recording as a whole, --around the frames before and after each EMCY, SDO abort, boot-up or error "
-        "frame. A recording can also serve as a bus that answers commands: --bus replay:FILE.",
+        "`time`, `date`, `id`, `len`, `data`, `byte`, `type`, `channel`, `ext`, `rtr`, `error`, - for one "
+        "that does not matter; `:ms`, `:us`, `:hex` and `:dec` say how one is written. Numbers that could be "
+        "decimal or hexadecimal are not guessed. One that is cut short or damaged is shown up to there, and "
+        "the place told; exit code 7. With -d the objects have their names, units and labels; a mixed "
+        "cabinet takes a family for each node, -d 3=gsd600,4-6=da200, or those of --cabinet FILE; -n limits "
+        "the output to these nodes (and frames without a node), --service and --object to such frames. "
+        "--clock shows date and time of day, with Z if they are UTC, else as the recording computer had "
+        "them. PDOs are decoded by the mapping read or written in the recording itself, else by the family's "
+        "factory mapping. `-o jsonl` gives one document per frame. `-` reads a pipe, and shows each frame "
+        "when it comes. --summary shows the recording as a whole, --around the frames before and after each "
+        "EMCY, SDO abort, boot-up or error frame. A recording can also serve as a bus that answers commands: "
+        "--bus replay:FILE.",
     .parameters = kDecodeParameters,
     .examples = kDecodeExamples,
     .needs = Needs::nothing,
