@@ -258,6 +258,7 @@ Result<Value> run_address(Context& context, const Arguments& arguments) {
   if (const auto words = check_words(context, arguments); !words) return fail(words.error());
   if (arguments.has("--plan")) return run_plan(context, arguments, *options);
   if (!arguments.has("--object")) return run_change(context, arguments, *options);
+  if (const auto wish = address_wish(arguments); !wish) return fail(wish.error());
   const auto own = settings::with_address_object(*context.profile, arguments.text("--object"));
   if (!own) return fail(own.error());
   if (const auto right = settings::check_address_object(context, *own); !right) return fail(right.error());

@@ -116,8 +116,10 @@ bool take_data(WordCursor& words, Frame& out) {
 /// The frame of `cansend can0 601#40.41.60.00`, wherever in a line of a shell it stands.
 std::optional<LogFrame> parse_cansend(std::string_view line) {
   constexpr std::string_view kCommand = "cansend";
+  line = line.substr(0, line.find(" #"));
   const auto at = line.find(kCommand);
-  if (at == std::string_view::npos) return std::nullopt;
+  // Of two on a line neither is left out.
+  if (at == std::string_view::npos || line.rfind(kCommand) != at) return std::nullopt;
   WordCursor words(line.substr(at + kCommand.size()));
   LogFrame out;
   out.interface_name = words.next();

@@ -40,6 +40,21 @@ bool is_log_remark(std::string_view line) {
   return line.starts_with('#') || line.starts_with("//") || line.starts_with("***") || line.starts_with(';');
 }
 
+LogMode read_log_mode(std::string_view line) {
+  constexpr std::string_view kStart = "***START DATE AND TIME ";
+  constexpr std::array<std::string_view, 2> kDates{"date:", "datum:"};
+  LogMode out;
+  line = trim(line);
+  for (const auto key : kDates)
+    if (starts_with_nocase(line, key)) out.day = parse_log_date(trim(line.substr(key.size())));
+  if (line.starts_with("***HEX***")) out.base = 16;
+  if (line.starts_with("***DEC***")) out.base = 10;
+  if (line.starts_with("***RELATIVE MODE***")) out.relative = true;
+  if (line.starts_with("***ABSOLUTE MODE***") || line.starts_with("***SYSTEM MODE***")) out.relative = false;
+  if (line.starts_with(kStart)) out.day = start_day(trim(line.substr(kStart.size())));
+  return out;
+}
+
 LogChoice::LogChoice(const ColumnChoice* columns) : choice_(columns) {
   for (const auto& format : log_formats()) candidates_.push_back({LogPattern(format), {}, 0});
 }
@@ -58,19 +73,12 @@ bool LogChoice::look(std::string_view line) {
   return decided || (choice_ == nullptr && !columns_ && look_for_formats(line));
 }
 
-/// What tools write above the frames of how these are written.
 bool LogChoice::look_for_mode(std::string_view line) {
-  constexpr std::string_view kStart = "***START DATE AND TIME ";
-  constexpr std::array<std::string_view, 2> kDates{"date:", "datum:"};
-  line = trim(line);
-  for (const auto key : kDates)
-    if (starts_with_nocase(line, key)) day_ = parse_log_date(trim(line.substr(key.size())));
-  if (!line.starts_with("***")) return false;
-  if (line.starts_with("***HEX***")) mode_base_ = 16;
-  if (line.starts_with("***DEC***")) mode_base_ = 10;
-  if (line.starts_with("***RELATIVE MODE***")) mode_relative_ = true;
-  if (line.starts_with(kStart)) day_ = start_day(trim(line.substr(kStart.size())));
-  return true;
+  const auto mode = read_log_mode(line);
+  if (mode.base) mode_base_ = *mode.base;
+  if (mode.relative) mode_relative_ = *mode.relative;
+  if (mode.day) day_ = mode.day;
+  return trim(line).starts_with("***");
 }
 
 bool LogChoice::look_for_candump(std::string_view line) {
@@ -169,6 +177,11 @@ LogNumbers LogChoice::numbers() const {
   else if (best() != nullptr)
     best()->evidence.settle(out);
   return out;
+}
+
+bool LogChoice::assumed_data() const {
+  if (columns_) return column_evidence_.assumed_data(numbers_before());
+  return best() != nullptr && best()->evidence.assumed_data(numbers_before());
 }
 
 bool LogChoice::assumed() const {

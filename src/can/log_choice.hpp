@@ -12,6 +12,14 @@
 
 namespace servoctl::can {
 
+/// What tools write above the frames of how these are written, again where they go on.
+struct LogMode {
+  std::optional<unsigned> base;
+  std::optional<bool> relative;
+  std::optional<Duration> day;
+};
+LogMode read_log_mode(std::string_view line);
+
 /// Finds out by the first lines of a text what recording it is.
 class LogChoice {
  public:
@@ -32,6 +40,8 @@ class LogChoice {
   LogNumbers numbers() const;
   /// The base of the identifiers was concluded from the data.
   bool assumed() const;
+  /// The base of the data was concluded from the identifiers.
+  bool assumed_data() const;
   /// Times of candump count from the line before (`-td`).
   bool relative_candump() const { return candump_back_; }
   std::optional<Duration> day() const { return day_; }

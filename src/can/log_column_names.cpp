@@ -86,7 +86,6 @@ constexpr ColumnName kColumnNames[] = {
     {LogRole::words, "frametype"},
     {LogRole::words, "format"},
     {LogRole::words, "frameformat"},
-    {LogRole::words, "state"},
     {LogRole::words, "typ"},
     {LogRole::words, "帧类型"},
     {LogRole::words, "\xD6\xA1\xC0\xE0\xD0\xCD"},
@@ -123,7 +122,12 @@ constexpr ColumnName kColumnNames[] = {
     {LogRole::error, "error"},
     {LogRole::error, "er"},
     {LogRole::error, "err"},
+    {LogRole::fd, "fd"},
+    {LogRole::fd, "fdf"},
+    {LogRole::fd, "edl"},
+    {LogRole::fd, "canfd"},
     // Known, and of no use here.
+    {LogRole::skip, "state"},
     {LogRole::skip, "no"},
     {LogRole::skip, "nr"},
     {LogRole::skip, "line"},
@@ -208,10 +212,11 @@ void take_qualifier(LogRole role, const HeaderName& name, LogNumbers& out) {
   if (role == LogRole::id && base != 0) out.id_base = base;
   if ((role == LogRole::data || role == LogRole::byte) && base != 0) out.data_base = base;
   if (role != LogRole::time) return;
-  out.relative = says("rel") || says("delta") || says("diff");
+  const bool from_start = says("start") || says("begin");
+  out.relative = !from_start && (says("rel") || says("delta") || says("diff"));
   if (says("ms"))
     out.unit = TimeUnit::milliseconds;
-  else if (says("us") || says("µs"))
+  else if (says("us") || says("µs") || says("μs") || says("\xB5s"))
     out.unit = TimeUnit::microseconds;
   else if (name.qualifier == "s" || says("sec") || says("seconds"))
     out.unit = TimeUnit::seconds;

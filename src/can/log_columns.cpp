@@ -1,6 +1,7 @@
 #include "can/log_columns.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "base/text.hpp"
@@ -28,6 +29,7 @@ LogColumns columns_of(const std::vector<std::string_view>& cells, char separator
     if (role != LogRole::skip) take_qualifier(role, name, out.numbers);
     intrepid = intrepid || name.name == "arbid";
     python = python || name.name == "arbitrationid";
+    if (role == LogRole::byte) out.bytes.push_back(static_cast<std::size_t>(name.name.back() - '0'));
     out.roles.push_back(role);
   }
   if (delta && !out.has(LogRole::time)) {
@@ -61,6 +63,20 @@ LogColumns best_columns(std::string_view line, std::size_t& known) {
     known = count;
   }
   return best;
+}
+
+/// Their numbers counted from 0: `D7` to `D0` count down. False where one is missing or twice there.
+bool count_bytes(std::vector<std::size_t>& bytes) {
+  if (bytes.empty()) return true;
+  const auto first = *std::min_element(bytes.begin(), bytes.end());
+  std::set<std::size_t> seen;
+  for (auto& byte : bytes) seen.insert(byte -= first);
+  return seen.size() == bytes.size() && *seen.rbegin() + 1 == bytes.size();
+}
+
+void put_byte(std::size_t at, std::string_view cell, std::vector<std::string_view>& out) {
+  if (out.size() <= at) out.resize(at + 1);
+  out[at] = cell;
 }
 
 }  // namespace
@@ -102,15 +118,18 @@ std::optional<LogColumns> read_column_names(std::string_view line) {
   auto out = best_columns(line, known);
   // Names between blanks are of columns that may be empty: which cell is which, they do not tell.
   const bool data = out.has(LogRole::data) || out.has(LogRole::byte);
-  if (out.separator == ' ' || !out.has(LogRole::id) || !data) return std::nullopt;
+  if (out.separator == ' ' || !out.has(LogRole::id) || !data || !count_bytes(out.bytes)) return std::nullopt;
   return out;
 }
 
 bool place_cells(const LogColumns& columns, const std::vector<std::string_view>& cells, LogCells& out) {
+  constexpr std::size_t kOneByte = 4;  // `0x40`.
   out.clear();
+  std::size_t byte = 0;
   for (std::size_t i = 0; i < cells.size(); ++i) {
     // Bytes in cells of their own behind one heading.
-    const bool beyond = i >= columns.roles.size() && !columns.roles.empty() &&
+    const bool beyond = i >= columns.roles.size() && !out.data.empty() &&
+                        bare_value(out.data.front()).size() <= kOneByte &&
                         (columns.roles.back() == LogRole::data || columns.roles.back() == LogRole::byte);
     switch (i < columns.roles.size() ? columns.roles[i] : beyond ? columns.roles.back() : LogRole::skip) {
       case LogRole::time: out.time = cells[i]; break;
@@ -118,13 +137,20 @@ bool place_cells(const LogColumns& columns, const std::vector<std::string_view>&
       case LogRole::id: out.id = cells[i]; break;
       case LogRole::decimal_id: out.decimal_id = cells[i]; break;
       case LogRole::length: out.length = cells[i]; break;
-      case LogRole::byte: out.data_by_byte = true; [[fallthrough]];
+      case LogRole::byte:
+        out.data_by_byte = true;
+        put_byte(byte < columns.bytes.size() ? columns.bytes[byte] : byte, cells[i], out.data);
+        ++byte;
+        break;
       case LogRole::data: out.data.push_back(cells[i]); break;
-      case LogRole::words: (void)read_log_words(cells[i], out.words); break;
+      case LogRole::words:
+        out.words.unknown |= !read_log_words(cells[i], out.words) && !bare_value(cells[i]).empty();
+        break;
       case LogRole::channel: out.channel = cells[i]; break;
       case LogRole::extended: out.extended = cells[i]; break;
       case LogRole::remote: out.remote = cells[i]; break;
       case LogRole::error: out.error = cells[i]; break;
+      case LogRole::fd: out.fd = cells[i]; break;
       case LogRole::skip: break;
     }
   }

@@ -24,6 +24,7 @@ enum class LogRole : std::uint8_t {
   extended,
   remote,
   error,
+  fd,
 };
 
 /// The columns of a log whose lines are split at one character.
@@ -31,15 +32,18 @@ struct LogColumns {
   char separator = ',';  ///< A blank stands for any number of blanks and tabs.
   std::vector<LogRole> roles;
   LogNumbers numbers;
+  /// Which byte each column of one holds, from 0; empty: in the order of the columns.
+  std::vector<std::size_t> bytes;
 
   bool has(LogRole role) const;
+  bool operator==(const LogColumns&) const = default;
 };
 
 /// The cells of a line; quotes stay, and a separator in quotes does not count.
 void split_cells(std::string_view line, char separator, std::vector<std::string_view>& out);
 
 /// The columns that a line names, in English, German or Chinese: `Time (abs)`, `ID (hex)`, `帧ID`. Empty
-/// where they name no identifier, or neither data nor a length.
+/// where they name no identifier or no data, or not which byte is which.
 std::optional<LogColumns> read_column_names(std::string_view line);
 
 /// Whether a line names columns, even if these are no columns of frames.

@@ -86,12 +86,30 @@ struct WordMeaning {
 };
 /// Whole words, in lower case.
 constexpr WordMeaning kWholeWords[] = {
-    {"s", &LogWords::standard},   {"x", &LogWords::extended},   {"r", &LogWords::remote},
-    {"rr", &LogWords::remote},    {"e", &LogWords::error},      {"er", &LogWords::error},
-    {"f", &LogWords::fd},         {"fb", &LogWords::fd},        {"fe", &LogWords::fd},
-    {"sff", &LogWords::standard}, {"eff", &LogWords::extended}, {"err", &LogWords::error},
-    {"r11", &LogWords::standard}, {"t11", &LogWords::standard}, {"r29", &LogWords::extended},
+    {"s", &LogWords::standard},
+    {"x", &LogWords::extended},
+    {"r", &LogWords::remote},
+    {"rr", &LogWords::remote},
+    {"e", &LogWords::error},
+    {"er", &LogWords::error},
+    {"f", &LogWords::fd},
+    {"fb", &LogWords::fd},
+    {"fe", &LogWords::fd},
+    {"sff", &LogWords::standard},
+    {"eff", &LogWords::extended},
+    {"err", &LogWords::error},
+    {"r11", &LogWords::standard},
+    {"t11", &LogWords::standard},
+    {"r29", &LogWords::extended},
     {"t29", &LogWords::extended},
+    {"11-bit", &LogWords::standard},
+    {"11bit", &LogWords::standard},
+    {"29-bit", &LogWords::extended},
+    {"29bit", &LogWords::extended},
+    {"2.0a", &LogWords::standard},
+    {"can 2.0a", &LogWords::standard},
+    {"2.0b", &LogWords::extended},
+    {"can 2.0b", &LogWords::extended},
 };
 /// Parts of words; the second form of a Chinese one is that of GBK.
 constexpr WordMeaning kParts[] = {
@@ -106,8 +124,24 @@ constexpr WordMeaning kParts[] = {
     {"错误", &LogWords::error},         {"\xB4\xED\xCE\xF3", &LogWords::error},
 };
 /// What says nothing of the kind: data frame, received, sent.
-constexpr std::string_view kPlainWords[] = {
-    "d", "dt", "rx", "tx", "data", "bs", "ei", "数据", "数据帧", "\xCA\xFD\xBE\xDD\xD6\xA1", "can"};
+constexpr std::string_view kPlainWords[] = {"d",
+                                            "dt",
+                                            "rx",
+                                            "tx",
+                                            "data",
+                                            "data frame",
+                                            "bs",
+                                            "ei",
+                                            "数据",
+                                            "数据帧",
+                                            "\xCA\xFD\xBE\xDD\xD6\xA1",
+                                            "can",
+                                            "normal",
+                                            "no error",
+                                            "接收",
+                                            "发送",
+                                            "\xBD\xD3\xCA\xD5",
+                                            "\xB7\xA2\xCB\xCD"};
 
 }  // namespace
 
@@ -237,11 +271,19 @@ bool is_direction(std::string_view text) {
                      [&](auto each) { return equals_nocase(word, each); });
 }
 
-bool is_yes(std::string_view text) {
-  constexpr std::string_view kWords[] = {"1", "t", "true", "y", "yes", "x", "rtr", "ext", "是", "\xCA\xC7"};
+std::optional<bool> yes_or_no(std::string_view text) {
+  constexpr std::string_view kYes[] = {"1",      "t",   "true",     "y",   "yes", "x",
+                                       "wahr",   "ja",  "vrai",     "oui", "r",   "rtr",
+                                       "remote", "ext", "extended", "eff", "是",  "\xCA\xC7"};
+  constexpr std::string_view kNo[] = {"",         "0",      "f",    "false", "n",       "no",
+                                      "-",        "falsch", "nein", "faux",  "non",     "std",
+                                      "standard", "sff",    "data", "否",    "\xB7\xF1"};
   const auto word = bare_value(text);
-  return std::any_of(std::begin(kWords), std::end(kWords),
-                     [&](auto each) { return equals_nocase(word, each); });
+  const auto is = [&](std::string_view each) { return equals_nocase(word, each); };
+  if (std::any_of(std::begin(kYes), std::end(kYes), is)) return true;
+  return std::any_of(std::begin(kNo), std::end(kNo), is) ? std::optional(false) : std::nullopt;
 }
+
+bool is_yes(std::string_view text) { return yes_or_no(text).value_or(false); }
 
 }  // namespace servoctl::can

@@ -55,6 +55,7 @@ struct LogWords {
   bool remote = false;
   bool error = false;
   bool fd = false;
+  bool unknown = false;  ///< A word in a column of them that says nothing known.
 };
 /// `x`, `Std`, `sr`, `Remote frame`, `扩展帧`, also in GBK; adds to `out`. False for a word that says
 /// nothing.
@@ -63,7 +64,8 @@ bool read_log_words(std::string_view text, LogWords& out);
 /// Whether a word is a direction: `Rx`, `TX`, `接收`, `->`.
 bool is_direction(std::string_view text);
 
-/// `1`, `T`, `true`, `yes`, `是`.
+/// `1`, `T`, `true`, `ja`, `是`, or `0`, `F`, `-`, `否` and nothing at all; empty for what is neither.
+std::optional<bool> yes_or_no(std::string_view text);
 bool is_yes(std::string_view text);
 
 }  // namespace servoctl::can

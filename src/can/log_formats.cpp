@@ -18,7 +18,10 @@ constexpr LogFormat kLogFormats[] = {
     {"BUSMASTER", "clock dir chan id word len data", {}},
     {"CANoe", "time =CAN? chan id dir =d|r len? data", {}},
     {"CANoe", "time =CAN? chan =ErrorFrame", {}},
-    {"plain", "number? time? chan? dir? id dir? word* len? data", {}},
+    // A number in front is one of the line only where what follows could not be its frame.
+    {"plain", "number time chan? dir? id dir? word* len? data", {}},
+    {"plain", "number chan? dir? id dir? word* len data", {}},
+    {"plain", "time? chan? dir? id dir? word* len? data", {}},
 };
 
 bool all_digits(std::string_view text) {

@@ -44,13 +44,17 @@ bool add_bytes(std::string_view word, unsigned base, std::vector<std::uint8_t>& 
   return true;
 }
 
-/// Up to the first cell that is empty; what stands behind is of no frame.
+bool is_blank(std::string_view cell) { return bare_value(cell).empty(); }
+
+bool has_data(const LogCells& cells) { return !std::all_of(cells.data.begin(), cells.data.end(), is_blank); }
+
+/// Up to the first cell that is empty; behind it none is filled.
 bool read_log_bytes(const LogCells& cells, const LogNumbers& numbers, std::vector<std::uint8_t>& out) {
   out.clear();
   bool good = true;
-  for (const auto cell : cells.data) {
-    const auto bare = bare_value(cell);
-    if (bare.empty()) break;
+  for (auto cell = cells.data.begin(); cell != cells.data.end(); ++cell) {
+    const auto bare = bare_value(*cell);
+    if (bare.empty()) return good && std::all_of(cell, cells.data.end(), is_blank);
     if (numbers.base64) {
       const auto bytes = parse_base64(bare);
       if (!bytes) return false;
@@ -66,8 +70,10 @@ bool read_log_bytes(const LogCells& cells, const LogNumbers& numbers, std::vecto
 bool read_log_id(const LogCells& cells, unsigned base, Frame& out) {
   const auto id = parse_log_id(cells.id);
   if (!id) return false;
-  const auto number = parse_digits(id->digits, id->base != 0 ? id->base : base);
-  if (!number || *number > kMostExtended) return false;
+  const auto in = id->base != 0 ? id->base : base;
+  const auto number = parse_digits(id->digits, in);
+  // 29 bits have eight digits; more are a decimal number.
+  if (!number || *number > kMostExtended || (in == 16 && id->digits.size() > 8)) return false;
   if (!cells.decimal_id.empty() && parse_digits(bare_value(cells.decimal_id), 10) != number) return false;
   const bool told = cells.words.extended || id->extended || is_yes(cells.extended);
   out.id = static_cast<std::uint32_t>(*number);
@@ -85,6 +91,16 @@ Frame log_error_frame() {
 
 bool is_hex_letter(char c) { return (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F'); }
 bool has_letter(std::string_view text) { return std::any_of(text.begin(), text.end(), is_hex_letter); }
+
+/// Whether what the line says of its frame in words is known, and fits the rest: `R` may be a remote frame,
+/// or one that was received.
+bool is_told_in_words(const LogCells& cells) {
+  for (const auto cell : {cells.extended, cells.remote, cells.error, cells.fd})
+    if (!yes_or_no(cell)) return false;
+  const bool sure = is_yes(cells.remote) || is_yes(cells.error);
+  const bool without_data = cells.words.remote || (cells.words.error && !is_blank(cells.id));
+  return !cells.words.unknown && (sure || !without_data || !has_data(cells));
+}
 
 }  // namespace
 
@@ -145,6 +161,7 @@ AscLine LogRow::read(const LogCells& cells, const LogNumbers& numbers) {
               {time_, channel.empty() ? "can1" : (number ? "can" : "") + std::string(channel), {}}};
   std::replace(out.frame.interface_name.begin(), out.frame.interface_name.end(), ' ', '-');
   auto& frame = out.frame.frame;
+  if (!is_told_in_words(cells)) return {LogKind::malformed};
   if (cells.words.error || is_yes(cells.error)) {
     frame = log_error_frame();
     return out;
@@ -152,13 +169,17 @@ AscLine LogRow::read(const LogCells& cells, const LogNumbers& numbers) {
   if (!read_log_id(cells, numbers.id_base, frame)) return {LogKind::malformed};
   frame.remote = cells.words.remote || is_yes(cells.remote);
   const auto length = parse_log_length(cells.length);
-  if (!length && !bare_value(cells.length).empty()) return {LogKind::malformed};
-  if (cells.words.fd || (length && *length > frame.data.size())) return {LogKind::unsuited};
+  if (!length && !is_blank(cells.length)) return {LogKind::malformed};
+  const bool fd = cells.words.fd || is_yes(cells.fd);
+  if (fd || (length && *length > frame.data.size())) return {LogKind::unsuited};
+  if (!read_log_bytes(cells, numbers, bytes_)) return {LogKind::malformed};
   if (frame.remote) {
+    // Some tools fill them with zeros.
+    if (std::any_of(bytes_.begin(), bytes_.end(), [](std::uint8_t byte) { return byte != 0; }))
+      return {LogKind::malformed};
     frame.size = static_cast<std::uint8_t>(length.value_or(0));
     return out;
   }
-  if (!read_log_bytes(cells, numbers, bytes_)) return {LogKind::malformed};
   if (!length && bytes_.size() > frame.data.size()) return {LogKind::unsuited};
   const auto size = length ? *length : bytes_.size();
   if (bytes_.size() < size || (bytes_.size() > size && !cells.data_by_byte)) return {LogKind::malformed};
@@ -179,7 +200,7 @@ void BaseEvidence::add_id(std::string_view text) {
   const auto id = parse_log_id(text);
   if (!id || id->base != 0) return;
   id_open_ = true;
-  const bool padded = id->digits.size() > 1 && id->digits.front() == '0';
+  const bool padded = id->digits.size() > 1 && id->digits.size() <= 8 && id->digits.front() == '0';
   id_hex_ = id_hex_ || has_letter(id->digits) || padded;
   const auto hex = parse_digits(id->digits, 16).value_or(0);
   const auto decimal = parse_digits(id->digits, 10).value_or(kMostExtended);
@@ -209,6 +230,10 @@ void BaseEvidence::settle(LogNumbers& numbers) const {
   }
   if (numbers.data_base == 0 && id_open_)
     numbers.data_base = id_hex_ ? 16 : id_over_ && !id_over_decimal_ ? 10 : 0;
+}
+
+bool BaseEvidence::assumed_data(const LogNumbers& before) const {
+  return before.data_base == 0 && data_open_ && !data_hex_ && !data_decimal_;
 }
 
 bool BaseEvidence::assumed(const LogNumbers& before) const {

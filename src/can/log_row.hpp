@@ -23,6 +23,7 @@ struct LogCells {
   std::string_view extended;  ///< A cell that says yes or no.
   std::string_view remote;    ///< As `extended`.
   std::string_view error;     ///< As `extended`.
+  std::string_view fd;        ///< As `extended`.
   LogWords words;
   std::vector<std::string_view> data;  ///< A byte each, or all of them in one.
   bool data_by_byte = false;           ///< A column for each byte: more of them than are sent.
@@ -37,6 +38,7 @@ struct LogNumbers {
   TimeUnit unit = TimeUnit::open;
   bool relative = false;  ///< Times count from the line before.
   bool base64 = false;    ///< The data are.
+  bool operator==(const LogNumbers&) const = default;
 };
 
 /// Makes frames of cells, line after line.
@@ -70,6 +72,8 @@ class BaseEvidence {
   void settle(LogNumbers& numbers) const;
   /// The base of the identifiers follows from the data alone.
   bool assumed(const LogNumbers& before) const;
+  /// That of the data follows from the identifiers alone.
+  bool assumed_data(const LogNumbers& before) const;
 
  private:
   void add_id(std::string_view text);

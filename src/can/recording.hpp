@@ -25,6 +25,7 @@ using TakeLogFrame = std::function<bool(const LogFrame& frame)>;
 struct RecordingDamage {
   std::uint64_t offset = 0;  ///< In bytes from the beginning.
   std::string what;
+  bool joined = false;  ///< It is whole: another recording begins there.
 };
 
 /// What of a recording gave no frame.
@@ -39,6 +40,7 @@ struct RecordingStrays {
   /// The recording does not say in which base its numbers are: nothing was read. The line that asks.
   std::size_t open_base = 0;
   unsigned assumed_base = 0;  ///< That of the identifiers, concluded from how the data are written.
+  unsigned assumed_data_base = 0;  ///< That of the data, concluded from how the identifiers are written.
   bool of_table = false;      ///< A table or a log of another tool, found by headings or words.
   bool lacks_unit = false;    ///< Its times are integers of an unknown unit, and were not read.
 

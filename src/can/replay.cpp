@@ -115,7 +115,7 @@ Result<std::unique_ptr<Bus>> open_replay(std::string_view place) {
     return fail(Errc::file,
                 formatted("{} is damaged at byte {}: {}", file, strays.damage->offset, strays.damage->what),
                 "`decode` shows what stands in front of that byte");
-  if (strays.open_base != 0 || strays.assumed_base != 0)
+  if (strays.open_base != 0 || strays.assumed_base != 0 || strays.assumed_data_base != 0)
     return fail(Errc::usage,
                 formatted("{}: nothing in it says whether its identifiers are decimal or hexadecimal", file),
                 "say it behind the file: `?columns=time,id:hex,data:hex`");

@@ -73,9 +73,13 @@ class LineReader {
     const bool half_byte = word.size() == 1 && word.find_first_of("0123456789abcdefABCDEF") == 0;
     if (form_ == Form::asc || form_ == Form::trc) return false;
     if (frame.error || frame.remote) return true;
-    if (half_byte || (form_ == Form::columns && numbers_.data_base != 16)) return false;
+    const bool decimal = form_ != Form::candump && numbers_.data_base != 16;
+    if (half_byte || decimal || (form_ == Form::columns && !has_all_cells())) return false;
     return length_told_ || frame.size == frame.data.size() || seen.has(frame);
   }
+
+  /// Whether other columns begin with the line that was read last.
+  bool columns_change() const { return columns_change_; }
 
   LogClock clock() const {
     if (form_ == Form::asc) return asc_.clock();
@@ -85,6 +89,15 @@ class LineReader {
   bool lacks_unit() const { return row_.lacks_unit(); }
 
  private:
+  /// Whether the line read last has a cell for each column that tells something, the last of them in full.
+  bool has_all_cells() const {
+    std::size_t last = columns_.roles.size();
+    while (last > 0 && columns_.roles[last - 1] == LogRole::skip) --last;
+    const bool ends_in_data =
+        last > 0 && (columns_.roles[last - 1] == LogRole::data || columns_.roles[last - 1] == LogRole::byte);
+    return cells_.size() > last || (cells_.size() == last && ends_in_data);
+  }
+
   AscLine read_line_of_candump(std::string_view line) {
     auto out = read_candump(line);
     length_told_ = line.find('[') != std::string_view::npos;
@@ -98,8 +111,11 @@ class LineReader {
   }
 
   AscLine read_columns(const TextLine& line) {
+    if (line.number == header_) named_ = read_column_names(line.text);
     if (line.number <= header_ || trim(line.text).empty()) return {};
     split_cells(line.text, columns_.separator, cells_);
+    if (const auto others = read_column_names(line.text); others && named_ && *others != *named_)
+      columns_change_ = true;
     const bool placed = place_cells(columns_, cells_, line_);
     if (!placed && (is_log_remark(line.text) || names_columns(line.text))) return {};
     length_told_ = !line_.length.empty();
@@ -110,6 +126,7 @@ class LineReader {
   }
 
   AscLine read_format(std::string_view line) {
+    take_mode(read_log_mode(line));
     if (is_log_remark(line)) return {};
     for (auto& pattern : patterns_) {
       if (!pattern.match(line, line_)) continue;
@@ -118,6 +135,12 @@ class LineReader {
     }
     if (names_columns(line)) return {};
     return {is_other_bus(line) ? AscLine::Kind::unsuited : AscLine::Kind::malformed, {}};
+  }
+
+  void take_mode(const LogMode& mode) {
+    if (mode.base) numbers_.id_base = numbers_.data_base = *mode.base;
+    if (mode.relative) numbers_.relative = *mode.relative;
+    if (mode.day) row_.set_day(*mode.day);
   }
 
   static bool is_other_bus(std::string_view line) {
@@ -131,6 +154,8 @@ class LineReader {
   AscReader asc_;
   TrcReader trc_;
   LogColumns columns_;
+  std::optional<LogColumns> named_;  ///< As the header names them.
+  bool columns_change_ = false;
   LogNumbers numbers_;
   std::vector<LogPattern> patterns_;
   std::vector<std::string_view> cells_;
@@ -162,6 +187,7 @@ class TextReader {
     }
     out_.of_table = rows;
     if (rows && choice_.assumed()) out_.assumed_base = numbers.id_base;
+    if (rows && choice_.assumed_data()) out_.assumed_data_base = numbers.data_base;
     LineReader reader(choice_);
     TextLine line;
     bool more = true;
@@ -196,6 +222,10 @@ class TextReader {
     const bool frame = read.kind == AscLine::Kind::frame;
     const bool cut = !line.ended && read.kind != AscLine::Kind::remark &&
                      !(frame && reader.is_whole(line.text, read.frame.frame, seen_));
+    if (reader.columns_change()) {
+      out_.damage = {line.offset, "other columns begin there", true};
+      return false;
+    }
     if (cut) {
       out_.damage = {line.offset, "its last line has no end"};
       return false;

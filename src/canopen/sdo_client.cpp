@@ -205,7 +205,7 @@ void SdoClient::on_upload_initiate(const can::Frame& frame, TimePoint now) {
 /// Some servers announce the room of a text and send the text. Of more than that a part may be missing.
 bool SdoClient::is_short() const {
   constexpr std::size_t kRoomOfText = 64;
-  return announced_ && data_.size()<*announced_&& * announced_> kRoomOfText;
+  return announced_.value_or(0) > kRoomOfText && data_.size() < *announced_;
 }
 
 void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {

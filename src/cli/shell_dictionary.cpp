@@ -48,7 +48,10 @@ Result<void> Shell::prepare_families(Run& run) {
     if (!nodes) return fail(nodes.error());
     const auto loaded = profile(std::string(trim(part.substr(std::min(sign + 1, part.size())))));
     if (!loaded) return fail(loaded.error());
-    for (const auto node : *nodes) run.context.families[node] = *loaded;
+    for (const auto node : *nodes)
+      if (const auto [known, is_new] = run.context.families.try_emplace(node, *loaded);
+          !is_new && known->second != *loaded)
+        return fail(Errc::usage, formatted("-d names two families for node {}", node), "say each node once");
   }
   return {};
 }

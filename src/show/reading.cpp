@@ -204,6 +204,11 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
   return out;
 }
 
+void leave_units_open(Reading& reading) {
+  static const session::DriveUnits kNone;
+  reading.units = &kNone;
+}
+
 std::string label_text(const DecodedValue& value, bool chinese) {
   if (chinese && value.word) return value_words(value.word->object, value.word->value, true);
   const auto& label = chinese && !value.label_zh.is_null() ? value.label_zh : value.label;

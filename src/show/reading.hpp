@@ -46,6 +46,9 @@ struct DecodedValue {
 };
 DecodedValue decode_value(const Reading& reading, ByteSpan bytes);
 
+/// Shows no unit that the data only assume: it is not the drive's.
+void leave_units_open(Reading& reading);
+
 /// The label, or what the bits of a word mean; empty where there is none.
 std::string label_text(const DecodedValue& value, bool chinese);
 /// The same for where there is little room: without the bits.

@@ -286,10 +286,8 @@ void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Targ
   auto data = *step.data;
   const auto size = show::size_of(reading);
   if (size != 0 && size < 4 && data.size() == 4 && load_le(data) >> (size * 8 - 1) == 0) data.resize(size);
-  // A unit that the data only assume is not the drive's.
-  static const session::DriveUnits kNone;
   const auto* family = family_of(*out_.node);
-  if ((family == nullptr || family->is_generic()) && target.entry != nullptr) reading.units = &kNone;
+  if ((family == nullptr || family->is_generic()) && target.entry != nullptr) show::leave_units_open(reading);
   const auto value = show::decode_value(reading, data);
   out_.text += " = " + value.text;
   const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;

@@ -49,6 +49,13 @@ std::vector<std::string> notices(std::string_view path, const Strays& strays) {
                 : "{}: identifiers are read as decimal, by how the lines are written; `--columns` can say "
                   "otherwise"),
         path));
+  if (strays.assumed_data_base != 0)
+    out.push_back(formatted(
+        fmt::runtime(
+            strays.assumed_data_base == 16
+                ? "{}: data are read as hexadecimal, as the identifiers are; `--columns` can say otherwise"
+                : "{}: data are read as decimal, as the identifiers are; `--columns` can say otherwise"),
+        path));
   if (strays.lacks_unit)
     out.push_back(formatted(
         "{}: the times have no unit and are left out; `--columns` can name it: time:ms, time:us", path));
@@ -57,6 +64,9 @@ std::vector<std::string> notices(std::string_view path, const Strays& strays) {
 
 Result<void> check_damage(std::string_view path, const Strays& strays) {
   if (!strays.damage) return {};
+  if (strays.damage->joined)
+    return fail(Errc::file, formatted("{}: byte {}: {}", path, strays.damage->offset, strays.damage->what),
+                "two recordings were joined: split the file there; what comes before that byte is read");
   return fail(Errc::file,
               formatted("{} is damaged at byte {}: {}", path, strays.damage->offset, strays.damage->what),
               "was it copied before it was complete? What stands in front of that byte is read");
@@ -72,10 +82,13 @@ Result<void> check_base(std::string_view path, const Strays& strays) {
 }
 
 Result<void> check_base_is_certain(std::string_view path, const Strays& strays) {
-  if (strays.assumed_base == 0) return check_base(path, strays);
+  if (strays.assumed_base == 0 && strays.assumed_data_base == 0) return check_base(path, strays);
   return fail(
       Errc::usage,
-      formatted("{}: nothing in it says whether its identifiers are decimal or hexadecimal", path),
+      formatted(fmt::runtime(strays.assumed_base != 0
+                                 ? "{}: nothing in it says whether its identifiers are decimal or hexadecimal"
+                                 : "{}: nothing in it says whether its data are decimal or hexadecimal"),
+                path),
       "frames are sent only if it is certain: say it with the columns, `--columns time,id:hex,data:hex`");
 }
 

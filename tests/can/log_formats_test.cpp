@@ -27,6 +27,13 @@ Frames bare_frames(std::string_view text) {
   return out;
 }
 
+/// Without what is told beside them.
+Frames frames_alone(std::string_view text) {
+  auto out = bare_frames(text);
+  std::erase_if(out, [](const std::string& line) { return line.find('#') == std::string::npos; });
+  return out;
+}
+
 RecordingStrays strays_of(std::string_view text, const ReadOptions& options = {}) {
   return for_each_frame(
       text, [](const LogFrame&) { return true; }, options);
@@ -222,6 +229,76 @@ TEST(LogFormats, EveryPatternIsOfWordsThatAreKnown) {
     LogCells cells;
     EXPECT_FALSE(LogPattern(format).match("", cells)) << format.name;
   }
+}
+
+TEST(LogFormats, TheNumbersOfByteColumnsTellTheirPlaces) {
+  EXPECT_EQ(frames_alone("ID (hex),DLC,D7,D6,D5,D4,D3,D2,D1,D0\n201,8,08,07,06,05,04,03,02,01\n"),
+            Frames{"201#0102030405060708"});
+  EXPECT_TRUE(frames_alone("ID (hex),DLC,D0,D2,D3\n201,3,08,07,06\n").empty()) << "one is missing";
+}
+
+TEST(LogFormats, DataOfAnUnknownBaseAreToldApartFromIdentifiers) {
+  const auto strays = strays_of("ID,DLC,D0,D1\n60A,2,43,64\n20A,2,15,10\n");
+  EXPECT_EQ(strays.assumed_base, 0U) << "letters";
+  EXPECT_EQ(strays.assumed_data_base, 16U);
+  EXPECT_EQ(strays_of("ID,DLC,D0,D1\n60A,2,43,04\n").assumed_data_base, 0U) << "zeros in front";
+}
+
+TEST(LogFormats, EachSessionOfALogHasItsOwnMode) {
+  const std::string hex = "***HEX***\n10:00:00:0000 Rx 1 0x181 s 2 37 02\n";
+  const std::string decimal = "***DEC***\n10:00:01:0000 Rx 1 385 s 2 55 2\n";
+  EXPECT_EQ(frames_alone(hex + decimal), (Frames{"181#3702", "181#3702"}));
+  EXPECT_EQ(frames_alone(decimal + hex), (Frames{"181#3702", "181#3702"}));
+}
+
+TEST(LogFormats, WhereOtherColumnsBeginTheRecordingEnds) {
+  const std::string hex = "Time (s),ID (hex),DLC,Data (hex)\n0.1,181,2,37 02\n";
+  const auto both = hex + "Time (s),ID (dec),DLC,Data (dec)\n0.2,385,2,55 2\n";
+  EXPECT_EQ(frames_alone(both), Frames{"181#3702"});
+  ASSERT_TRUE(strays_of(both).damage);
+  EXPECT_EQ(strays_of(both).damage->offset, hex.size());
+  EXPECT_EQ(frames_alone(hex + hex).size(), 2U) << "the same once more";
+}
+
+TEST(LogFormats, AWordThatSaysNothingKnownMakesNoFrame) {
+  const std::string_view lines[] = {
+      "ID (hex),Extended,Data (hex)\n601,vielleicht,40 41\n",
+      "ID (hex),Type,Data (hex)\n601,strange,40 41\n",
+      "ID (hex),Type,DLC,Data (hex)\n601,R,2,40 41\n",  // Remote, or received?
+      "ID (hex),Type,DLC,Data (hex)\n601,Error active,2,40 41\n",
+      "ID (hex),RTR,DLC,Data (hex)\n601,1,2,40 41\n",
+      "ID (hex),D0 (hex),D1,D2\n601,40,,60\n",
+      "ID (hex),Data (hex)\n0000001537,40 41\n",
+  };
+  for (const auto line : lines) {
+    EXPECT_TRUE(frames_alone(line).empty()) << line;
+    EXPECT_EQ(strays_of(line).unknown, 1U) << line;
+  }
+  EXPECT_EQ(frames_alone("ID (hex),Extended,Data (hex)\n601,WAHR,40 41\n601,FALSCH,40 41\n"),
+            (Frames{"00000601#4041", "601#4041"}));
+  EXPECT_EQ(frames_alone("ID (hex),Type,Data (hex)\n601,29-bit,40 41\n"), Frames{"00000601#4041"});
+  EXPECT_EQ(strays_of("ID (hex),EDL,Data (hex)\n601,1,40 41\n").unsuited, 1U);
+}
+
+TEST(LogFormats, AnIdentifierInFrontIsNoNumberOfALine) {
+  EXPECT_EQ(frames_alone("201 0600\n"), Frames{"201#0600"});
+  EXPECT_EQ(frames_alone("000 8101\n"), Frames{"000#8101"});
+  EXPECT_EQ(frames_alone("7 601 8 40 41 60 00 00 00 00 00\n"), Frames{kTalk[0]});
+  EXPECT_TRUE(frames_alone("1) 601 0181 2 37 02\n").empty());
+}
+
+TEST(LogFormats, OfTwoCommandsOnALineNoneIsLeftOut) {
+  EXPECT_EQ(strays_of("cansend can0 601#40\ncansend can0 601#41; cansend can0 601#42\n").unknown, 1U);
+  EXPECT_EQ(frames_alone("cansend can0 601#40\ntrue # cansend can0 000#0101\n"), Frames{"601#40"});
+}
+
+TEST(LogFormats, ALastLineThatMayBeCutIsNotTrusted) {
+  const std::string_view cut[] = {
+      "***DEC***\n10:00:00:0000 Rx 1 385 s 2 55 2\n10:00:00:0000 Rx 1 385 s 2 55 12",
+      "DLC,Data (hex),ID (hex)\n2,37 02,181\n2,37 02,18",
+      "ID (hex),DLC,Data (hex),Extended\n601,2,37 02,0\n601,2,37 02",
+  };
+  for (const auto text : cut) EXPECT_TRUE(strays_of(text).damage) << text;
 }
 
 }  // namespace
