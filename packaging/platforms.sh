@@ -33,7 +33,7 @@ make_root() {
   fi
   for folder in proc sys dev; do mount --rbind "/$folder" "$root/$folder"; done
   inside "$1" "dpkg --add-architecture arm64; apt-get update -qq
-    apt-get install -y -qq --no-install-recommends ca-certificates git g++-aarch64-linux-gnu pkgconf:arm64 {libfmt-dev,libpugixml-dev,libnl-3-dev,libboost-context-dev,zlib1g-dev,libc6,libstdc++6}:arm64 >/dev/null"
+    apt-get install -y -qq --no-install-recommends ca-certificates debootstrap git g++-aarch64-linux-gnu pkgconf:arm64 {libfmt-dev,libpugixml-dev,libnl-3-dev,libboost-context-dev,zlib1g-dev,libc6,libstdc++6}:arm64 >/dev/null"
 }
 
 # The commit that is checked out here.

@@ -49,7 +49,7 @@ works .deb "$work/root/usr/bin/servoctl"
 gzip -dc root/usr/share/man/man1/servoctl.1.gz | cmp -s - <(root/usr/bin/servoctl man) || fail "the manual page is not that of the program"
 gzip -dc root/usr/share/man/zh_CN/man1/servoctl.1.gz | cmp -s - <(root/usr/bin/servoctl man --lang zh) || fail "nor is the Chinese one"
 for library in libboost libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus; do
-  grep -q "^$library.*-dev (source: .* .*)" root/usr/share/doc/servoctl/copyright || fail "no licence of $library"
+  grep -q "^$library.*-dev (source: [^ ]* [^ ]*)$" root/usr/share/doc/servoctl/copyright || fail "no licence of $library"
 done
 while IFS= read -r terms; do
   [ -e "$terms" ] || fail "$terms is not there"
@@ -70,7 +70,7 @@ mkdir -p 'an other place/ü'
 tar -xzf packed/*.tar.gz -C 'an other place/ü' --strip-components=1
 has tarball "$work/an other place/ü" "${common[@]}" share/zsh/site-functions/_servoctl share/doc/servoctl/licenses/LGPL-2.1
 for library in libboost libcli11 libfmt nlohmann-json3 libexpected libtomlplusplus libpugixml libnl-3 zlib1g libstdc++ libc6; do
-  grep -q "^$library.*-dev (source: .* .*)" 'an other place/ü/share/doc/servoctl/copyright' || fail "no licence of $library in the tarball"
+  grep -q "^$library.*-dev (source: [^ ]* [^ ]*)$" 'an other place/ü/share/doc/servoctl/copyright' || fail "no licence of $library in the tarball"
 done
 works tarball "$work/an other place/ü/bin/servoctl"
 ln -s 'an other place/ü/bin/servoctl' linked

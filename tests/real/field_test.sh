@@ -200,6 +200,7 @@ check_slcan() {
 check_drives_and_interface() {
   simulate gsd600@3
   run address --bitrate 500k -n all -d gsd600 -b can0 --dry-run
+  # shellcheck disable=SC2016  # A command that is shown, not run.
   expect 0 '000#8100 \(NMT reset node to all\), `ip link set can0 down`, `ip link set can0 up type can bitrate 500000`'
   [ "$(bitrate can0)" = 1000000 ] || fail "a dry run changed can0"
   run address --bitrate 500k -n all -d gsd600 -b can0; expect 8 'and can0 goes to 500 kbit/s \(from 1 Mbit/s'
@@ -214,6 +215,7 @@ check_slaves_and_interface() {
   simulate 'gsd600@3?lss'
   local line=(lss set-bitrate 500k --all --activate 1s -b can0)
   run "${line[@]}" --dry-run
+  # shellcheck disable=SC2016  # A command that is shown, not run.
   expect 0 '`ip link set can0 down`, `ip link set can0 up type can bitrate 500000`'
   run "${line[@]}"; expect 8 'can0 goes with them to 500 kbit/s \(from 1 Mbit/s'
   [ "$(bitrate can0)" = 1000000 ] || fail "a question that was not answered changed can0"
