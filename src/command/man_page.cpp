@@ -30,7 +30,7 @@ class ManPage {
   std::string head(std::string_view version, std::string_view date) const {
     return formatted(
                ".\\\" Written by `servoctl man`.\n.TH SERVOCTL 1 \"{}\" \"servoctl {}\" \"{}\"\n"
-               ".nh\n.ad l\n",
+               ".nh\n.ad l\n.ds AD l\n",  // groff 1.23 adjusts each section anew, as AD says.
                date, roff_literal(version), roff_literal(said("User commands"))) +
            section("Name") + "servoctl \\- " + said("commission CANopen servo drives from a terminal") +
            "\n" + section("Synopsis") +

@@ -47,7 +47,9 @@ def tour(document):
                         env.pop(name, None)
                     continue
                 done = subprocess.run(["bash", "-c", line[2:]], env=env, cwd=home, capture_output=True, text=True, timeout=LONGEST)
-                out += (done.stdout + done.stderr).replace(source + "/", "").replace(home + "/", "~/").splitlines()
+                # In ~/.config/servoctl/ there may be /servoctl/, where the sources are.
+                shown = re.sub(rf"(?<![\w.~-]){re.escape(source)}/", "", done.stdout + done.stderr)
+                out += shown.replace(home + "/", "~/").splitlines()
                 ran += 1
             return "```console\n" + "\n".join(out) + "\n```"
 

@@ -172,7 +172,7 @@ def check_client():
 def check_lss():
     """An LSS slave of the other stack is found; its master finds a simulated slave by fastscan."""
     peer = Peer("lss", "slave", 0)
-    code, answer = run("lss", "lss", "scan", "--patience", "20ms")
+    code, answer = run("lss", "lss", "scan", "--patience", "50ms")
     check(f"fastscan finds its identity: {answer}", "0x11223344" in json.dumps(answer))
     # CiA 305, switch state selective: the slave that is meant confirms with 44h. This stack does not, so servoctl selects nobody.
     code, answer = run("lss", "lss", "set-node", "7", "--vendor", "0x11223344", "--product", "2", "--revision", "3", "--serial", "4", "--yes")
