@@ -31,6 +31,7 @@ make_root() {
     debootstrap --variant=minbase "$1" "$root.part" >"$kept/$1.log" || { tail -5 "$kept/$1.log"; die "debootstrap cannot make a root of $1"; }
     mv "$root.part" "$root"
   fi
+  mount --bind "$root" "$root"  # What is tested unshares mounts, which needs a root that is one.
   for folder in proc sys dev; do mount --rbind "/$folder" "$root/$folder"; done
   inside "$1" "dpkg --add-architecture arm64; apt-get update -qq
     apt-get install -y -qq --no-install-recommends ca-certificates debootstrap git g++-aarch64-linux-gnu pkgconf:arm64 {libfmt-dev,libpugixml-dev,libnl-3-dev,libboost-context-dev,zlib1g-dev,libc6,libstdc++6}:arm64 >/dev/null"
