@@ -1,4 +1,5 @@
 """What the tests of the program on terminals and pipes have in common."""
+import errno
 import json
 import os
 import pty
@@ -15,6 +16,23 @@ def check(what, condition):
     if not condition:
         failures += 1
         print("FAILED", what)
+
+
+def machine_of(program):
+    with open(program, "rb") as file:
+        return file.read(20)[18:]  # e_machine of ELF.
+
+
+def needs_serial_lines(servoctl):
+    """Skips the test where qemu runs the program and does not know how serial lines are set (TCGETS2)."""
+    if machine_of(servoctl) == machine_of(sys.executable):
+        return
+    ends = pty.openpty()
+    line = ["scan", "-n", "1", "--timeout", "20ms", "-b", f"slcan:{os.ttyname(ends[1])}@500k"]
+    said = subprocess.run([servoctl, *line], capture_output=True, text=True).stderr
+    if os.strerror(errno.ENOSYS) in said:
+        print("skipped: qemu runs the program, and has no serial lines")
+        sys.exit(77)
 
 
 def obeying(*families):

@@ -10,10 +10,11 @@ import sys
 import tempfile
 import time
 
-from checks import check, finish
+from checks import check, finish, needs_serial_lines
 from joined_ptys import JoinedPtys
 
 servoctl = os.path.abspath(sys.argv[1])
+needs_serial_lines(servoctl)
 folder = tempfile.mkdtemp(prefix="servoctl-modbus-")
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
 env.update(LANG="C", SERVOCTL_DRIVE="ts", XDG_STATE_HOME=folder)

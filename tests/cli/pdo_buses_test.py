@@ -8,11 +8,12 @@ import subprocess
 import sys
 import tempfile
 
-from checks import check, finish
+from checks import check, finish, needs_serial_lines
 from serial_adapters import Adapter, Wire
 from socketcand_server import Server
 
 servoctl = sys.argv[1]
+needs_serial_lines(servoctl)
 folder = tempfile.TemporaryDirectory()
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
 env.update(LANG="C", XDG_STATE_HOME=folder.name)

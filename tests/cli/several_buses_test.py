@@ -9,11 +9,12 @@ import sys
 import tempfile
 import time
 
-from checks import check, finish
+from checks import check, finish, needs_serial_lines
 from serial_adapters import Adapter, Wire
 from socketcand_server import Server
 
 servoctl = sys.argv[1]
+needs_serial_lines(servoctl)
 folder = tempfile.mkdtemp(prefix="servoctl-several-")
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
 env |= {"LANG": "C", "XDG_RUNTIME_DIR": os.path.join(folder, "run"), "XDG_STATE_HOME": os.path.join(folder, "state")}

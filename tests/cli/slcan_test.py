@@ -11,12 +11,13 @@ import tempfile
 import threading
 import time
 
-from checks import check, finish
+from checks import check, finish, needs_serial_lines
 from pty_terminal import Terminal
 from pty_terminal import failures as prompt_failures
 from serial_adapters import Adapter, Wire
 
 servoctl = sys.argv[1]
+needs_serial_lines(servoctl)
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
 env["LANG"] = "C"
 

@@ -14,10 +14,11 @@ import tempfile
 import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "cli"))
-from checks import check, finish
+from checks import check, finish, needs_serial_lines
 from joined_ptys import JoinedPtys
 
 servoctl = os.path.abspath(sys.argv[1])
+needs_serial_lines(servoctl)
 folder = tempfile.mkdtemp(prefix="servoctl-peers-")
 atexit.register(shutil.rmtree, folder, ignore_errors=True)
 env = {k: v for k, v in os.environ.items() if not k.startswith("SERVOCTL_")}
