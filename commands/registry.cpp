@@ -105,6 +105,7 @@ extern const Command kDecode;
 extern const Command kReplay;
 extern const Command kDrives;
 extern const Command kEdsCheck;
+extern const Command kEdsVerify;
 extern const Command kRun;
 extern const Command kSim;
 extern const Command kGateway;
@@ -220,6 +221,7 @@ constexpr Named kNamed[] = {
     {"replay", &commands::kReplay},
     {"drives", &commands::kDrives},
     {"eds check", &commands::kEdsCheck},
+    {"eds verify", &commands::kEdsVerify},
     {"run", &commands::kRun},
     {"sim", &commands::kSim},
     {"gateway", &commands::kGateway},

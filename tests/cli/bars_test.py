@@ -102,6 +102,7 @@ LINES = {
     "pdo watch": ("pdo watch --for 2s -o jsonl" + THERE, LEFT),
     "pdo send": ("pdo send RPDO1 0x06" + SILENT, ELAPSED),
     "test comm": ("test comm --count 80 --longest 10s -b sim:gsd600@1?delay=20ms -n 1 -d gsd600", LEFT),
+    "eds verify": ("eds verify many.eds" + SLOW, BAR),
     "test io": ("test io --for 2s" + THERE, LATEST),
     "test jog": ("test jog 60rpm --limit 600rpm" + TURN, BAR),
     "test home": ("test home 17 --spread 5 --limit 900rpm --window 5rev --panel PA-20=0,PA-74=1 -n 1 -d sv2 -b sim:sv2@1?panel=PA-20=0,PA-74=1", LATEST),
@@ -128,6 +129,8 @@ FILES = {
                  '[axis.lift.parameters]\nPn0214 = "45Hz"\n',
     "slow.log": "(0.000000) can0 080#\n(0.700000) can0 080#\n(1.800000) can0 080#\n",
     "slow.servoctl": "wait 2s\n",
+    "many.eds": "".join(f"[{index:X}]\nParameterName=own {index:X}\nObjectType=0x7\nDataType=0x5\nAccessType=ro\nPDOMapping=0\n"
+                        for index in range(0x4000, 0x4180)),
 }
 MADE = ("backup good.json -n 1 -d gsd600 -b sim:gsd600@1", "pdo save pdos.toml -n 1 -d gsd600 -b sim:gsd600@1")
 

@@ -122,6 +122,7 @@ inline const std::map<std::string, std::string> kSampleLines{
     {"cabinet backup", "cabinet backup --cabinet DIR/cabinet.toml"},
     {"cabinet diff", "cabinet diff DIR/cabinet.toml DIR/cabinet.toml"},
     {"eds check", "eds check EDS"},
+    {"eds verify", "eds verify EDS -n 1"},
     {"run", "run DIR/lines.servoctl"},
     {"sim", "sim FAMILY@3"},
     {"gateway", "gateway --listen DIR/gateway --allow write -y"},

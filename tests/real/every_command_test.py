@@ -39,6 +39,7 @@ cabinet backup
 cabinet swap one --yes
 diff good.json node:1
 verify good.json
+eds verify good.eds
 restore good.json --yes
 clone --from 1 --to 2 --yes
 address 5 --yes
@@ -195,6 +196,8 @@ check("commands that are no more", not (covered | set(LEFT_OUT)) - set(COMMANDS)
 
 with open("cabinet.toml", "w") as file:
     file.write('[bus.main]\nurl = "can0"\n[axis.one]\nbus = "main"\nnode = 1\nfamily = "gsd600"\n[axis.one.parameters]\nPn0214 = "47Hz"\n')
+with open("good.eds", "w") as file:
+    file.write("[1000]\nParameterName=Device type\nObjectType=0x7\nDataType=0x7\nAccessType=ro\nPDOMapping=0\n")
 with open("lines", "w") as file:
     file.write("read 0x1000\n" * 5)
 with open("good.log", "w") as file:
