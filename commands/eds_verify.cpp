@@ -4,7 +4,6 @@
 #include "command/trial_options.hpp"
 #include "od/data_sheet.hpp"
 #include "settings/dictionary_verdict.hpp"
-#include "settings/dictionary_write_back.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -16,9 +15,6 @@ constexpr Parameter kEdsVerifyParameters[] = {
     {.name = "--listed", .help = "ask only for objects that the file lists", .kind = Kind::flag},
     {.name = "--factory",
      .help = "the drive is at factory values: another value than the default is a difference",
-     .kind = Kind::flag},
-    {.name = "--write",
-     .help = "write each harmless setting back as it was read: shows access and size",
      .kind = Kind::flag},
     kJunitOption,
 };
@@ -39,25 +35,22 @@ Result<report::Value> run_eds_verify(Context& context, const Arguments& argument
   if (!file) return fail(file.error());
   const settings::CheckOptions options{.listed_only = arguments.has("--listed"),
                                        .factory = arguments.has("--factory")};
-  std::vector<settings::DictionaryCheck> checks;
+  std::vector<report::TestResult> results;
   report::List out;
   for (const auto node : context.nodes) {
-    auto check = settings::check_dictionary(context, node, *file, options);
-    if (check && arguments.has("--write"))
-      if (const auto written = settings::write_back(context, *file, *check); !written)
-        context.errors.push_back(written.error());
-    if (!check) {
-      if (check.error().code == Errc::interrupted || check.error().code == Errc::bus)
-        return fail(check.error());
-      context.errors.push_back(check.error());
+    const auto check = settings::check_dictionary(context, node, *file, options);
+    if (check) {
+      out.emplace_back(settings::dictionary_record(context, word, *check));
+      results.push_back(settings::dictionary_test(*file, *check));
       continue;
     }
-    out.emplace_back(settings::dictionary_record(context, word, *check));
-    checks.push_back(std::move(*check));
+    context.errors.push_back(check.error());
+    results.push_back(settings::dictionary_test(node, check.error()));
+    if (check.error().code == Errc::interrupted || check.error().code == Errc::bus) break;
   }
   if (arguments.has("--junit"))
-    if (const auto written = write_file_atomically(std::string(arguments.text("--junit")),
-                                                   settings::dictionary_junit(*file, checks));
+    if (const auto written =
+            write_file_atomically(std::string(arguments.text("--junit")), report::junit_xml(results));
         !written)
       context.errors.push_back(written.error());
   return report::Value(std::move(out));
@@ -66,7 +59,6 @@ Result<report::Value> run_eds_verify(Context& context, const Arguments& argument
 constexpr Example kEdsVerifyExamples[] = {
     {"eds verify drive.eds -n 1", "what of the file is not true of this drive"},
     {"eds verify drive.eds --factory --junit eds.xml -n 1", "a drive as delivered, with a file for a CI"},
-    {"eds verify drive.eds --write -n 1", "also which settings can be written"},
 };
 
 }  // namespace
@@ -83,15 +75,12 @@ const Command kEdsVerify{
         "standard objects, further sub-indices; on EtherCAT the drive lists its own. Not on a drive that is "
         "enabled, or that raises an alarm for an object which it does not have, and not with --listed. If the "
         "drive sends an EMCY meanwhile, nothing more is read. A setting may have another value than its default: "
-        "such values are counted, and with --factory they are differences. A read shows neither sign nor write "
-        "access. --write writes values back as they were read, after a question, while the power stage is off, "
-        "each once, and reads them again: not communication, PDOs, commands, targets, addresses, or what the "
-        "name says is more than a setting.",
+        "such values are counted, and with --factory they are differences. Nothing is written, so that a "
+        "sign, and whether an object can be written, stay open.",
     .parameters = kEdsVerifyParameters,
     .examples = kEdsVerifyExamples,
     .needs = Needs::node,
-    .effect = Effect::writes,
-    .reads_without = "--write",
+    .effect = Effect::reads,
     .run = run_eds_verify,
     .one_file = "--junit",
 };

@@ -29,29 +29,36 @@ Result<std::vector<Result<Bytes>>> ObjectSurvey::read(std::span<const ObjectAddr
   std::vector<Result<Bytes>> out;
   while (out.size() < objects.size()) {
     const auto part = objects.subspan(out.size(), std::min(kAtOnce, objects.size() - out.size()));
-    std::vector<SdoRequest> requests;
-    for (const auto object : part)
-      requests.push_back({.node = node_, .object = object, .despite_alarm = on_alarm_ == OnAlarm::go_on});
-    auto answers = session_->transfer(requests);
-    const auto taken = take(answers, out);
-    if (!taken) return fail(taken.error());
+    auto answers = ask(part);
+    if (const auto taken = take(answers, part, out); !taken) return fail(taken.error());
     if (const auto quiet = check_alarms(part.back()); !quiet) return fail(quiet.error());
   }
   return out;
 }
 
-/// What follows a read without an answer was not sent: it is asked for again if the node still answers.
-Result<void> ObjectSurvey::take(std::vector<Result<Bytes>>& answers, std::vector<Result<Bytes>>& out) {
-  for (auto& answer : answers) {
+std::vector<Result<Bytes>> ObjectSurvey::ask(std::span<const ObjectAddress> objects) {
+  std::vector<SdoRequest> requests;
+  for (const auto object : objects)
+    requests.push_back({.node = node_, .object = object, .despite_alarm = on_alarm_ == OnAlarm::go_on});
+  return session_->transfer(requests);
+}
+
+/// What follows a read without an answer was not sent: it is asked for again if the node still answers, and
+/// so is what came late.
+Result<void> ObjectSurvey::take(std::vector<Result<Bytes>>& answers, std::span<const ObjectAddress> objects,
+                                std::vector<Result<Bytes>>& out) {
+  for (std::size_t i = 0; i < answers.size(); ++i) {
     ++requests_;
-    if (answer || is_of_one_object(answer.error())) {
-      out.push_back(std::move(answer));
-      continue;
+    auto& answer = answers[i];
+    const bool is_silent = !answer && answer.error().code == Errc::timeout;
+    if (is_silent) {
+      if (const auto alive = check_alive(answer.error()); !alive) return alive;
+      answer = std::move(ask(objects.subspan(i, 1)).front());
     }
-    if (answer.error().code != Errc::timeout) return fail(answer.error());
-    const auto alive = check_alive(answer.error());
-    if (alive) out.push_back(std::move(answer));
-    return alive;
+    if (!answer && !is_of_one_object(answer.error()) && answer.error().code != Errc::timeout)
+      return fail(answer.error());
+    out.push_back(std::move(answer));
+    if (is_silent) return {};
   }
   return {};
 }

@@ -30,7 +30,9 @@ class ObjectSurvey {
   std::size_t requests() const { return requests_; }
 
  private:
-  Result<void> take(std::vector<Result<Bytes>>& answers, std::vector<Result<Bytes>>& out);
+  std::vector<Result<Bytes>> ask(std::span<const ObjectAddress> objects);
+  Result<void> take(std::vector<Result<Bytes>>& answers, std::span<const ObjectAddress> objects,
+                    std::vector<Result<Bytes>>& out);
   Result<void> check_alive(const Error& silence);
   Result<void> check_alarms(ObjectAddress last);
 

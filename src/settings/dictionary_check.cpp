@@ -5,6 +5,7 @@
 
 #include "base/format.hpp"
 #include "drive/access_alarms.hpp"
+#include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/addressing.hpp"
 #include "session/object_survey.hpp"
@@ -75,13 +76,13 @@ class DictionaryReader {
     for (const auto& object : file_->dictionary.objects())
       for (const auto& entry : object.entries) {
         const bool reads = od::readable(entry.access);
-        if (!reads && (wary || entry.type == od::DataType::domain)) continue;
         const auto alarm = alarm_of(*session_, node_, entry.address);
-        if (alarm.empty())
-          listed_.push_back({&object, &entry});
+        if (!reads && (wary || entry.type == od::DataType::domain))
+          judge_.leave(object, entry, "not asked for: it is write-only");
+        else if (!alarm.empty())
+          judge_.leave(object, entry, formatted("not asked for: it may raise the alarm {}", alarm));
         else
-          out_.unchecked.push_back({entry.address, full_name(*desk_, object, entry),
-                                    formatted("not asked for: it may raise the alarm {}", alarm)});
+          listed_.push_back({&object, &entry});
       }
   }
 
@@ -129,11 +130,14 @@ class DictionaryReader {
         compare_description(described->sheet.dictionary, file_->dictionary, judge_, out_);
         return {};
       }
-      if (described.error().code != Errc::sdo_abort && described.error().code != Errc::protocol)
+      if (described.error().code == Errc::interrupted || described.error().code == Errc::bus)
         return fail(described.error());
+      desk_->notices.push_back(
+          formatted("node {} does not describe its objects: types and access were not compared", node_));
     }
-    const auto energised = session::is_energised(*session_, node_);
+    auto energised = session::is_energised(*session_, node_);
     if (!energised) return fail(energised.error());
+    energised = *energised || is_other_axis_energised();
     if (*energised || session_->wary_of(node_) != nullptr) {
       desk_->notices.push_back(
           *energised
@@ -145,8 +149,37 @@ class DictionaryReader {
                     node_));
       return {};
     }
+    if (const auto all = answers_everything(); !all || *all) return all.map([](bool) {});
     const auto* standard = desk_->standard != nullptr ? &desk_->standard->dictionary : nullptr;
     return probe_unlisted(survey_, file_->dictionary, standard, judge_, out_);
+  }
+
+  /// CiA 402: the objects of each further axis are 800h higher.
+  bool is_other_axis_energised() const {
+    for (unsigned index = objects::kStatusword.index + 0x800U; index < 0xA000U; index += 0x800U) {
+      const auto word = out_.values.find({static_cast<std::uint16_t>(index), 0});
+      if (word != out_.values.end() &&
+          drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(word->second)))))
+        return true;
+    }
+    return false;
+  }
+
+  /// Whether the node answers whatever it is asked for: then nothing tells which objects it has.
+  Result<bool> answers_everything() {
+    std::vector<ObjectAddress> unlikely;
+    for (const unsigned index : {0x5E3BU, 0x4D71U})
+      if (const ObjectAddress object{static_cast<std::uint16_t>(index), 0};
+          file_->dictionary.object(object.index) == nullptr)
+        unlikely.push_back(object);
+    const auto answers = survey_.read(unlikely);
+    if (!answers) return fail(answers.error());
+    const bool all = !answers->empty() && std::all_of(answers->begin(), answers->end(),
+                                                      [](const auto& answer) { return answer.has_value(); });
+    if (all)
+      desk_->notices.push_back(
+          formatted("node {} answers reads of any object: it was asked only for those of the file", node_));
+    return all;
   }
 
   show::Desk* desk_;

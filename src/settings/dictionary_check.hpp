@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,9 +21,9 @@ enum class Difference : std::uint8_t {
   unlisted,       ///< The drive has it; the file does not list it.
   type,           ///< The bytes cannot be of this type, or the drive describes another one.
   size,           ///< The drive has another number of bytes.
-  access,         ///< It cannot be read, or written, as the file says; or it can, and the file denies it.
+  access,         ///< It cannot be read as the file says; or it can, and the file denies it.
   default_value,  ///< A constant of another value; with `factory` also a setting.
-  limits,         ///< The value is outside LowLimit and HighLimit, or the drive refuses its own value.
+  limits,         ///< The value is outside LowLimit and HighLimit.
   no_answer,      ///< This object alone is not answered properly.
 };
 std::string_view name(
@@ -52,7 +51,6 @@ struct DictionaryCheck {
   std::size_t answered = 0;     ///< Of these, whose value was read.
   std::size_t probed = 0;       ///< Objects that the file does not list and that were asked for.
   std::size_t not_default = 0;  ///< Settings with another value than the default, where no finding.
-  std::optional<std::size_t> written = {};  ///< Values written back; empty: that was not asked for.
   std::vector<DictionaryFinding> findings;  ///< In rising address.
   std::vector<UncheckedEntry> unchecked;
   std::map<ObjectAddress, Bytes> values = {};  ///< What was read.
@@ -82,8 +80,11 @@ class EntryJudge {
   void judge(const od::Object& object, const od::Entry& entry, const Result<Bytes>& answer);
   void add(const od::Object& object, const od::Entry& entry, Difference difference, std::string file,
            std::string drive);
+  /// Nothing was found out about it.
+  void leave(const od::Object& object, const od::Entry& entry, std::string reason, bool is_empty = false);
 
  private:
+  bool is_unfilled(ObjectAddress address) const;
   void judge_refusal(const od::Object& object, const od::Entry& entry, const Error& refusal);
   void judge_bytes(const od::Object& object, const od::Entry& entry, Bytes bytes);
   void judge_value(const od::Object& object, const od::Entry& entry, const Bytes& bytes);

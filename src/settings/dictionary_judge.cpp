@@ -128,16 +128,28 @@ void EntryJudge::judge_refusal(const od::Object& object, const od::Entry& entry,
     return add(object, entry, Difference::no_answer, std::string(od::name(entry.access)),
                refusal.code == Errc::timeout ? "no answer" : "malformed answer");
   const auto code = refusal.abort_code.value_or(0);
+  if (code == abort_of::kNoSubIndex && is_unfilled(entry.address))
+    return leave(object, entry, canopen::sdo_abort_text(code), true);
   if (code == abort_of::kNoObject || code == abort_of::kNoSubIndex)
     return add(object, entry, Difference::missing,
                formatted("{} {}", od::name(entry.type), od::name(entry.access)), formatted("{:08X}h", code));
-  const bool unreadable = code == abort_of::kWriteOnly || code == abort_of::kUnsupportedAccess;
-  if (!od::readable(entry.access) && unreadable) return;
-  if (unreadable)
-    return add(object, entry, Difference::access, std::string(od::name(entry.access)),
-               code == abort_of::kWriteOnly ? "write-only" : "not readable");
-  out_->unchecked.push_back({entry.address, full_name(*desk_, object, entry), canopen::sdo_abort_text(code),
-                             code == abort_of::kNoData});
+  const bool readable = od::readable(entry.access);
+  if (!readable && (code == abort_of::kWriteOnly || code == abort_of::kUnsupportedAccess)) return;
+  if (code == abort_of::kWriteOnly)
+    return add(object, entry, Difference::access, std::string(od::name(entry.access)), "write-only");
+  leave(object, entry, canopen::sdo_abort_text(code), code == abort_of::kNoData);
+}
+
+/// A place of the error history, or of a PDO mapping, that holds nothing now.
+bool EntryJudge::is_unfilled(ObjectAddress address) const {
+  if (address.sub == 0 || (address.index != objects::kErrorHistory.index && !pdo_at(address.index)))
+    return false;
+  const auto count = out_->values.find({address.index, 0});
+  return count != out_->values.end() && load_le(count->second) < address.sub;
+}
+
+void EntryJudge::leave(const od::Object& object, const od::Entry& entry, std::string reason, bool is_empty) {
+  out_->unchecked.push_back({entry.address, full_name(*desk_, object, entry), std::move(reason), is_empty});
 }
 
 void EntryJudge::judge_bytes(const od::Object& object, const od::Entry& entry, Bytes bytes) {

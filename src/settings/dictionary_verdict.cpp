@@ -2,13 +2,14 @@
 
 #include "base/format.hpp"
 #include "base/text.hpp"
-#include "report/verdict.hpp"
 
 namespace servoctl::settings {
 namespace {
 
 using report::Show;
 using report::Value;
+
+constexpr std::string_view kTest = "eds verify";
 
 /// For people; name() is for programs.
 std::string_view in_words(Difference difference) {
@@ -69,13 +70,15 @@ report::Criterion failed(const DictionaryFinding& first, const std::vector<const
   return out;
 }
 
-report::TestResult result_of(const od::EdsFile& file, const DictionaryCheck& check) {
+}  // namespace
+
+report::TestResult dictionary_test(const od::EdsFile& file, const DictionaryCheck& check) {
   ByObject found;
   for (const auto& each : check.findings) found[each.object].push_back(&each);
   std::map<ObjectAddress, const UncheckedEntry*> unchecked;
   for (const auto& each : check.unchecked) unchecked[each.object] = &each;
   report::TestResult out;
-  out.test = "eds verify";
+  out.test = kTest;
   out.node = check.node;
   for (const auto& object : file.dictionary.objects())
     for (const auto& entry : object.entries) {
@@ -92,7 +95,17 @@ report::TestResult result_of(const od::EdsFile& file, const DictionaryCheck& che
   return out;
 }
 
-}  // namespace
+report::TestResult dictionary_test(std::uint8_t node, const Error& error) {
+  report::TestResult out;
+  out.test = kTest;
+  out.node = node;
+  out.criteria.push_back({.id = "compared",
+                          .name = "compared",
+                          .verdict = report::Verdict::failed,
+                          .relation = {},
+                          .note = error.message});
+  return out;
+}
 
 report::Record dictionary_record(show::Desk& desk, const std::string& file, const DictionaryCheck& check) {
   const auto differences = check.findings.size();
@@ -106,7 +119,6 @@ report::Record dictionary_record(show::Desk& desk, const std::string& file, cons
           {"read", check.answered, Show::everywhere, "values read"},
           {"probed", check.probed, Show::everywhere, "others asked for"},
           {"not_default", check.not_default, Show::everywhere, "not at default"},
-          {"written", check.written ? Value(*check.written) : Value(), Show::everywhere, "written back"},
           {"differences", differences},
           {"not_compared", check.unchecked.size(), Show::text, "not compared"},
           {"findings", findings_table(check), Show::json},
@@ -114,11 +126,4 @@ report::Record dictionary_record(show::Desk& desk, const std::string& file, cons
           {"unchecked", unchecked_table(check, true), Show::json},
           {"unchecked", shown(unchecked_table(check, false)), Show::text, "not compared"}};
 }
-
-std::string dictionary_junit(const od::EdsFile& file, const std::vector<DictionaryCheck>& checks) {
-  std::vector<report::TestResult> results;
-  for (const auto& check : checks) results.push_back(result_of(file, check));
-  return report::junit_xml(results);
-}
-
 }  // namespace servoctl::settings

@@ -10,7 +10,6 @@
 
 #include "lying_node.hpp"
 #include "settings/dictionary_verdict.hpp"
-#include "settings/dictionary_write_back.hpp"
 #include "tests/show/audiences.hpp"
 #include "tests/source_dir.hpp"
 
@@ -250,54 +249,57 @@ TEST_F(DictionaryCheckTest, AnswersOfAlwaysFourBytesAreNoOtherSizes) {
   EXPECT_NE(desk.notices[0].find("four bytes"), std::string::npos);
 }
 
-class WriteBackTest : public DictionaryCheckTest {
- protected:
-  WriteBackTest() {
-    node().objects.values[{0x6041, 0}] = {0x50, 0x02};
-    desk.audience = &yes_;
-  }
-  DictionaryCheck written_back() {
-    auto checked = check().value();
-    const auto written = write_back(desk, file, checked);
-    EXPECT_TRUE(written) << written.error().message;
-    return checked;
-  }
-
-  show::Willing yes_;
-};
-
-TEST_F(WriteBackTest, WritesHarmlessSettingsAsTheyWere) {
-  const auto before = node().objects.values;
-  const auto checked = written_back();
-  EXPECT_GT(*checked.written, 100U);
-  EXPECT_EQ(node().objects.writes.size(), *checked.written);
-  EXPECT_EQ(node().objects.values, before);
-  for (const auto object : node().objects.writes) {
-    EXPECT_GE(object.index, 0x2000) << to_string(object);
-    for (const auto index : {0x6040, 0x6060, 0x607A, 0x60FF, 0x6071, 0x60C1, 0x60FE})
-      EXPECT_NE(object.index, index) << to_string(object);
-  }
+TEST_F(DictionaryCheckTest, AnAnswerThatIsLostOnceIsNoDifference) {
+  node().late_once = {{0x6065, 0}};
+  EXPECT_EQ(listed_text(found()), "");
 }
 
-TEST_F(WriteBackTest, TellsWhatTheDriveRefuses) {
-  node().objects.read_only.insert({0x6065, 0});
-  node().objects.refused_values.insert({0x6083, 0});
-  const auto checked = written_back();
-  Found out;
-  for (const auto& each : checked.findings) out.emplace(each.object, each.difference);
-  EXPECT_EQ(listed_text(out), "0x6065:0 access\n0x6083:0 limits\n");
+TEST_F(DictionaryCheckTest, AnEmptyErrorHistoryIsNotMissing) {
+  auto* history = file.dictionary.object(0x1003);
+  ASSERT_NE(history, nullptr);
+  ASSERT_GT(history->entries.size(), 1U);
+  node().objects.values[{0x1003, 0}] = {0};
+  for (const auto& entry : history->entries)
+    if (entry.address.sub != 0) node().objects.values.erase(entry.address);
+  EXPECT_EQ(listed_text(found()), "");
 }
 
-TEST_F(WriteBackTest, WritesNothingWhileTheDriveIsEnabledOrNobodyAgrees) {
-  auto checked = check().value();
-  node().objects.values[{0x6041, 0}] = {0x37, 0x02};
-  EXPECT_EQ(write_back(desk, file, checked).error().code, Errc::refused);
-  node().objects.values[{0x6041, 0}] = {0x50, 0x02};
-  desk.audience = nullptr;
-  EXPECT_EQ(write_back(desk, file, checked).error().code, Errc::refused);
-  desk.dry_run = true;
-  EXPECT_TRUE(write_back(desk, file, checked));
-  EXPECT_TRUE(node().objects.writes.empty());
+TEST_F(DictionaryCheckTest, WhatTheDriveCannotTransferIsNotCalledUnreadable) {
+  const ObjectAddress object{0x6065, 0};
+  node().objects.unsupported.insert(object);
+  const auto checked = check();
+  ASSERT_TRUE(checked);
+  EXPECT_TRUE(checked->findings.empty());
+  ASSERT_EQ(checked->unchecked.size(), 1U);
+  EXPECT_EQ(checked->unchecked[0].object, object);
+}
+
+TEST_F(DictionaryCheckTest, WhatIsNotListedIsNotAskedForWhileAnotherAxisIsEnabled) {
+  auto second = *file.dictionary.object(0x6041);
+  second.index = 0x6841;
+  second.entries.front().address.index = 0x6841;
+  file.dictionary.add(second);
+  node().objects.values[{0x6841, 0}] = {0x37, 0x02};
+  const auto checked = check();
+  ASSERT_TRUE(checked);
+  EXPECT_EQ(checked->probed, 0U);
+}
+
+TEST_F(DictionaryCheckTest, ADriveThatAnswersWhateverItIsAskedForIsNotProbed) {
+  node().objects.answers_all = true;
+  const auto checked = check();
+  ASSERT_TRUE(checked);
+  EXPECT_EQ(checked->probed, 0U);
+  ASSERT_EQ(desk.notices.size(), 1U);
+  EXPECT_NE(desk.notices[0].find("answers reads of any object"), std::string::npos);
+}
+
+TEST_F(DictionaryCheckTest, JunitHasAFailureForANodeThatWasNotCompared) {
+  const Error silence{.code = Errc::timeout, .message = "no answer"};
+  const auto xml = report::junit_xml({dictionary_test(9, silence)});
+  EXPECT_NE(xml.find("eds verify node 9"), std::string::npos) << xml;
+  EXPECT_NE(xml.find("failures=\"1\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("no answer"), std::string::npos) << xml;
 }
 
 TEST_F(DictionaryCheckTest, JunitHasACaseForEachEntryAndEachExtraObject) {
@@ -305,7 +307,7 @@ TEST_F(DictionaryCheckTest, JunitHasACaseForEachEntryAndEachExtraObject) {
   node().objects.values[{0x2006, 0}] = {0};
   auto checked = check();
   ASSERT_TRUE(checked);
-  const auto xml = dictionary_junit(file, {*checked});
+  const auto xml = report::junit_xml({dictionary_test(file, *checked)});
   EXPECT_NE(xml.find("failures=\"" + std::to_string(checked->findings.size()) + "\""), std::string::npos);
   EXPECT_NE(xml.find("name=\"0x6065:0\""), std::string::npos);
   EXPECT_NE(xml.find("<failure message=\"missing: file: u32 rw, drive: 06020000h\""), std::string::npos)

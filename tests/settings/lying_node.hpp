@@ -22,8 +22,10 @@ class LyingObjects final : public canopen::ObjectStore {
   }
 
   std::uint32_t read(ObjectAddress object, Bytes& out) override {
+    if (unsupported.contains(object)) return canopen::sdo_abort::kUnsupportedAccess;
     const auto found = values.find(object);
-    if (found == values.end()) return absence(object);
+    if (found == values.end() && answers_all) out = {0};
+    if (found == values.end()) return answers_all ? 0 : absence(object);
     if (write_only.contains(object)) return canopen::sdo_abort::kWriteOnly;
     out = found->second;
     return 0;
@@ -32,13 +34,9 @@ class LyingObjects final : public canopen::ObjectStore {
     if (!values.contains(object)) return absence(object);
     return read_only.contains(object) ? canopen::sdo_abort::kReadOnly : 0;
   }
-  std::uint32_t write(ObjectAddress object, ByteSpan data) override {
-    if (const auto refused = check_writable(object); refused != 0) return refused;
-    if (refused_values.contains(object)) return canopen::sdo_abort::kRange;
-    if (values[object].size() != data.size()) return canopen::sdo_abort::kLength;
-    values[object].assign(data.begin(), data.end());
+  std::uint32_t write(ObjectAddress object, ByteSpan) override {
     writes.push_back(object);
-    return 0;
+    return canopen::sdo_abort::kReadOnly;
   }
   void remove(std::uint16_t index) {
     std::erase_if(values, [&](const auto& each) { return each.first.index == index; });
@@ -47,7 +45,8 @@ class LyingObjects final : public canopen::ObjectStore {
   std::map<ObjectAddress, Bytes> values;
   std::set<ObjectAddress> write_only;
   std::set<ObjectAddress> read_only;
-  std::set<ObjectAddress> refused_values;
+  std::set<ObjectAddress> unsupported;
+  bool answers_all = false;
   std::vector<ObjectAddress> writes;
 
  private:
@@ -83,6 +82,7 @@ class LyingNode {
 
   LyingObjects objects;
   std::set<ObjectAddress> silent;
+  std::set<ObjectAddress> late_once;  ///< The first request for one is lost.
   std::set<ObjectAddress> alarming;  ///< A request for one is answered, and an EMCY sent.
   bool dead = false;
   std::size_t dies_after = 1'000'000;  ///< Requests.
@@ -97,7 +97,7 @@ class LyingNode {
     const ObjectAddress object{static_cast<std::uint16_t>(frame.data[1] | frame.data[2] << 8U),
                                frame.data[3]};
     const bool begins = (frame.data[0] & 0xE0U) == 0x40;
-    if (begins && silent.contains(object)) return;
+    if (begins && (silent.contains(object) || late_once.erase(object) > 0)) return;
     if (begins && alarming.contains(object)) to.arrive("081#3081210000000000");
     server_.on_frame(frame, to.now());
     while (const auto out = server_.take_frame()) to.arrive(*out, std::chrono::milliseconds(1));
