@@ -69,7 +69,8 @@ Result<report::Value> run_param_set(Context& context, const Arguments& arguments
       changes.push_back(std::move(*change));
     }
   }
-  settings::WriteOptions options{.keep = arguments.has("--keep"), .unlock = arguments.has("--unlock")};
+  settings::WriteOptions options{
+      .keep = arguments.has("--keep"), .unlock = arguments.has("--unlock"), .leave_equal = true};
   if (context.dry_run) return settings::planned_changes(context, changes, options);
   if (const auto confirmed = settings::confirm_changes(context, changes); !confirmed)
     return fail(confirmed.error());
@@ -102,9 +103,7 @@ const Command kParamSet{
     .path = "param set",
     .summary = "Change panel parameters of a drive and read them back",
     .details =
-        "All values are checked before the first frame. A plain number is the number the panel shows (Pn0214 "
-        "400), a number with a unit is converted (Pn0214 40Hz), a label stands for its value. Stops at the "
-        "first refusal. The result shows whether the value was read back and when it takes effect.",
+        "All values are checked before the first frame. A plain number is the number the panel shows (Pn0214 400), a number with a unit is converted (Pn0214 40Hz), a label stands for its value. A value that the drive holds already is not written again (unchanged). Stops at the first refusal. The result shows whether the value was read back and when it takes effect.",
     .parameters = kParamSetParameters,
     .examples = kParamSetExamples,
     .needs = Needs::node | Needs::dictionary,

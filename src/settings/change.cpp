@@ -14,6 +14,7 @@
 #include "session/drive_units.hpp"
 #include "session/measure.hpp"
 #include "settings/energising.hpp"
+#include "settings/equal_values.hpp"
 #include "settings/keeping_nodes.hpp"
 #include "settings/own_size.hpp"
 #include "settings/register_writes.hpp"
@@ -182,12 +183,13 @@ report::List change_row(const Change& change, const Result<session::Written>& wr
           report::text_or_null(decoded.unit),
           decoded.familiar,
           decoded.label,
-          session::state_text(written, change.target.address),
+          change.unchanged ? "unchanged" : session::state_text(written, change.target.address),
           known ? Value(written.has_value()) : Value(),
+          known ? Value(written.has_value() && !change.unchanged) : Value(),
           written ? Value(written->read_back.has_value()) : Value(false),
           written ? kept : Value(),
-          written ? kept_text(kept) : Value(),
-          written ? report::text_or_null(effect_text(effect)) : Value(),
+          written && !(change.unchanged && kept.is_null()) ? kept_text(kept) : Value(),
+          written && !change.unchanged ? report::text_or_null(effect_text(effect)) : Value(),
           report::text_or_null(std::string(od::name(effect))),
           written ? Value() : show::error_record(written.error(), show::abort_words(desk, written.error()))};
 }
@@ -259,6 +261,7 @@ report::Table change_table() {
                    {"label", "", Show::json},
                    {"state", "result", Show::text},
                    {"written", "", Show::json},
+                   {"changed", "", Show::json},
                    {"read_back", "", Show::json},
                    {"kept", "", Show::json},
                    {"kept_text", "kept", Show::text},
@@ -273,15 +276,31 @@ report::Table change_table() {
 void read_in_force(show::Desk& desk, std::span<const Change> changes) {
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
-    if (drive::meaning(change.target, change.node).effect == od::Effect::restart)
+    if (!change.before && drive::meaning(change.target, change.node).effect == od::Effect::restart)
       requests.push_back({.node = change.node, .object = change.target.address});
   if (!requests.empty()) (void)desk.session->transfer(requests);
+}
+
+/// Writes all but what is unchanged, which counts as written and read back.
+std::vector<Result<session::Written>> write_open(show::Desk& desk, std::span<const Change> changes,
+                                                 std::span<const session::SdoRequest> requests,
+                                                 bool read_back) {
+  std::vector<session::SdoRequest> open;
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (!changes[i].unchanged) open.push_back(requests[i]);
+  auto done = session::write_all(*desk.session, open, read_back);
+  std::vector<Result<session::Written>> out;
+  std::size_t next = 0;
+  for (const auto& change : changes)
+    out.push_back(change.unchanged ? session::Written{false, change.before} : std::move(done[next++]));
+  return out;
 }
 
 }  // namespace
 
 Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, const WriteOptions& options) {
   auto changes = changes_with(desk, wanted, options);
+  mark_unchanged(desk, changes, options);
   std::vector<session::SdoRequest> requests;
   for (const auto& change : changes)
     requests.push_back({change.node, change.target.address, change.data, change.transfer});
@@ -293,8 +312,9 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, co
   const auto hold = desk.session->protect(energises ? session::Care::energised : session::Care::none);
   read_in_force(desk, changes);
   const bool read_back = options.read_back || options.keep || is_only_echoed(desk, changes);
-  auto written = session::write_all(*desk.session, requests, read_back);
+  auto written = write_open(desk, changes, requests, read_back);
   write_in_own_size(desk, changes, requests, written, read_back);
+  write_altered(desk, changes, written);
   keeping.close(written);
   for (const auto& change : changes)
     if (enables(change)) desk.session->energised().insert(change.node);

@@ -22,6 +22,8 @@ struct Change {
   canopen::Transfer transfer = canopen::Transfer::automatic;
   std::optional<drive::Bridge> bridge = {};  ///< What the drive's own measures say of the unit.
   bool type_given = false;                   ///< The user said the type: its size is not to be changed.
+  std::optional<Bytes> before = {};  ///< What the drive held just before the write, where it was read.
+  bool unchanged = false;            ///< The drive holds the value already: nothing is written.
 };
 
 /// Name of the object for a message that tells its address beside it: its label, else its address.
@@ -50,8 +52,9 @@ report::Value planned_frames(show::Desk& desk, std::span<const Change> changes);
 /// What is to be done beside writing.
 struct WriteOptions {
   bool read_back = false;
-  bool keep = false;    ///< Make the values survive power-off, by the family's way.
-  bool unlock = false;  ///< Give the family's password before, and take it back after.
+  bool keep = false;         ///< Make the values survive power-off, by the family's way.
+  bool unlock = false;       ///< Give the family's password before, and take it back after.
+  bool leave_equal = false;  ///< Read first, and do not write what the drive holds already.
 };
 
 /// What write_changes() would send: the values, and what the family's password and memory need around them.

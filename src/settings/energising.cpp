@@ -63,7 +63,8 @@ void tell_power(show::Desk& desk, std::uint8_t node, const drive::PowerParameter
       node, parameter.end, parameter.value, node));
 }
 
-/// What the write does beside changing a value; empty when nothing, as for a password.
+}  // namespace
+
 std::string_view reason_to_ask(const show::Desk& desk, const Change& change) {
   const auto* profile = desk.profile;
   const auto* entry = change.target.entry;
@@ -85,8 +86,6 @@ std::string_view reason_to_ask(const show::Desk& desk, const Change& change) {
     return "After a restart the drive has another bitrate.";
   return {};
 }
-
-}  // namespace
 
 bool enables(const Change& change) { return drive::is_enabling_write(change.target.address, change.data); }
 

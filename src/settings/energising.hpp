@@ -2,6 +2,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "drive/power_parameter.hpp"
 #include "session/write.hpp"
@@ -18,6 +19,9 @@ bool enables(const Change& change);
 /// The parameter by which it energises the motor, or sets it in motion, without the controlword; null for
 /// others.
 const drive::PowerParameter* power_parameter(const show::Desk& desk, const Change& change);
+
+/// What the write does beside changing a value; empty when nothing, as for a password.
+std::string_view reason_to_ask(const show::Desk& desk, const Change& change);
 
 /// What servoctl does not write into this object of a drive, whoever agrees: Errc::refused for a COB-ID that
 /// no drive may have and, where the network gives a motor no power, for what energises one without the

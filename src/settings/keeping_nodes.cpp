@@ -30,6 +30,7 @@ Result<void> KeepingNodes::open(const WriteOptions& options) {
   if (const auto reachable = check_registers(*desk_, changes_); !reachable) return reachable;
   for (auto& each : nodes_) {
     const auto node = each.first;
+    if (!options.keep && is_unchanged(node)) continue;
     const bool choose = std::any_of(changes_.begin(), changes_.end(), [&](const Change& change) {
       return change.node == node && goes_to_memory(change);
     });
@@ -45,12 +46,14 @@ void KeepingNodes::close(std::span<const Result<session::Written>> written) {
   for (auto& [node, storage] : nodes_) {
     std::size_t of_node = 0;
     std::size_t done = 0;
+    std::size_t writes = 0;
     for (std::size_t i = 0; i < changes_.size(); ++i) {
       if (changes_[i].node != node) continue;
       ++of_node;
       done += written[i] ? 1U : 0U;
+      writes += written[i] && !changes_[i].unchanged ? 1U : 0U;
     }
-    close_node(node, *storage, done == of_node, done);
+    close_node(node, *storage, done == of_node, writes);
   }
 }
 
@@ -67,6 +70,8 @@ report::Value KeepingNodes::kept(const Change& change) const {
   const auto index = change.target.address.index;
   const auto* profile = desk_->profile;
   if (change.target.address == objects::kControlword) return false;
+  // It may have been kept before.
+  if (change.unchanged && kept != session::Kept::yes) return {};
   // A switch of the memory is for the objects that go through it, and stated for the maker's own.
   const bool switched = profile != nullptr && !profile->rules.store.flash_switch.empty();
   if (switched && (!goes_to_memory(change) || !session::is_known_to_keep(*profile, change.target.address)))
@@ -78,6 +83,12 @@ report::Value KeepingNodes::kept(const Change& change) const {
   const bool stores = profile != nullptr && profile->rules.store.objects &&
                       profile->dictionary.find({objects::kStoreIndex, 1}) != nullptr;
   return of_standard && stores ? report::Value(false) : report::Value();
+}
+
+/// Whether nothing is written to the node.
+bool KeepingNodes::is_unchanged(std::uint8_t node) const {
+  return std::all_of(changes_.begin(), changes_.end(),
+                     [&](const Change& change) { return change.node != node || change.unchanged; });
 }
 
 report::Value kept_text(const report::Value& kept) {

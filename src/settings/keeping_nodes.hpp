@@ -29,6 +29,7 @@ class KeepingNodes {
   report::Value kept(const Change& change) const;
 
  private:
+  bool is_unchanged(std::uint8_t node) const;
   bool goes_to_memory(const Change& change) const;
   void close_node(std::uint8_t node, session::StorageScope& storage, bool all_written, std::size_t writes);
 

@@ -1,5 +1,7 @@
 // What --dry-run shows of values that would be written.
+#include "base/format.hpp"
 #include "settings/change.hpp"
+#include "settings/equal_values.hpp"
 #include "settings/keeping_nodes.hpp"
 #include "settings/stored_copies.hpp"
 #include "show/planned_messages.hpp"
@@ -11,7 +13,17 @@ using report::Value;
 
 void add_writes(std::span<const Change> changes, session::Rehearsal& rehearsal) {
   for (const auto& change : changes)
-    rehearsal.add(session::planned_write({change.node, change.target.address, change.data, change.transfer}));
+    if (!change.unchanged)
+      rehearsal.add(
+          session::planned_write({change.node, change.target.address, change.data, change.transfer}));
+}
+
+void tell_unchanged(show::Desk& desk, std::span<const Change> changes) {
+  for (const auto& change : changes)
+    if (change.unchanged)
+      desk.notices.push_back(
+          formatted("node {}: {} is unchanged: the drive holds this value, and nothing is written",
+                    change.node, change.target.in_sentence()));
 }
 
 }  // namespace
@@ -33,7 +45,9 @@ Value planned_frames(show::Desk& desk, std::span<const Change> changes) {
 }
 
 Result<Value> planned_changes(show::Desk& desk, std::span<const Change> wanted, const WriteOptions& options) {
-  const auto changes = changes_with(desk, wanted, options);
+  auto changes = changes_with(desk, wanted, options);
+  mark_unchanged(desk, changes, options);
+  tell_unchanged(desk, changes);
   session::Rehearsal rehearsal;
   KeepingNodes keeping(desk, changes);
   keeping.rehearse(rehearsal);
