@@ -1,10 +1,8 @@
 #include <algorithm>
 
-#include "base/file.hpp"
 #include "base/format.hpp"
 #include "command/command.hpp"
 #include "drive/naming.hpp"
-#include "od/data_sheet.hpp"
 #include "show/object_records.hpp"
 #include "show/records.hpp"
 
@@ -29,14 +27,6 @@ bool wanted_object(std::string_view pattern, const od::Object& object, const od:
          show::contains_nocase(object.name_zh + " " + entry.name_zh, pattern);
 }
 
-/// What the data sheet says beside the dictionary; nothing where there is none.
-od::EdsFile data_sheet_of(const drive::Profile& profile) {
-  if (profile.data_sheet.empty()) return {};
-  const auto text = od::read_sheet_file(profile.data_sheet.string());
-  if (!text || od::is_xml(*text)) return {};  // An ESI says nothing beside it.
-  return od::read_eds(*text, profile.data_sheet.string()).value_or(od::EdsFile{});
-}
-
 /// Of an object that is asked for by its index, what its values stand for.
 void add_values(const Context& context, const od::Entry& entry, report::Table& table) {
   const auto values = show::object_values(*context.profile, entry, context.chinese);
@@ -46,25 +36,25 @@ void add_values(const Context& context, const od::Entry& entry, report::Table& t
 }
 
 Result<report::Value> run_objects(Context& context, const Arguments& arguments) {
-  const auto sheet = data_sheet_of(*context.profile);
+  const auto& profile = *context.profile;
   const auto pattern = arguments.text("pattern");
-  std::vector<report::Record> records;
+  report::Table table;
   std::vector<const od::Entry*> shown;
-  for (const auto& object : context.profile->dictionary.objects())
+  for (const auto& object : profile.dictionary.objects())
     for (const auto& entry : object.entries)
       if (wanted_object(pattern, object, entry)) {
-        records.push_back(show::object_record(*context.profile, object, entry, sheet.notes, context.chinese));
+        show::add_object_row(table, show::object_record(profile, object, entry, context.chinese));
         shown.push_back(&entry);
       }
-  if (records.empty())
-    return fail(Errc::negative, formatted("no object of {} matches '{}'", context.profile->family, pattern),
+  if (shown.empty())
+    return fail(Errc::negative, formatted("no object of {} matches '{}'", profile.family, pattern),
                 "try a shorter word, or 0x60* for a range of indexes");
-  auto table = show::object_table(std::move(records));
+  show::explain_marks(table);
   if (parse_object_address(pattern))
     for (const auto* entry : shown) add_values(context, *entry, table);
-  if (sheet.node_id != 0)
+  if (profile.configured_node != 0)
     context.notices.push_back(
-        formatted("{} is the configuration of node {}", context.profile->family, sheet.node_id));
+        formatted("{} is the configuration of node {}", profile.family, profile.configured_node));
   return report::Value(std::move(table));
 }
 

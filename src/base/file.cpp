@@ -11,7 +11,6 @@
 #include <climits>
 #include <cstdio>
 #include <ctime>
-#include <memory>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -27,10 +26,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Close {
-  void operator()(std::FILE* file) const { std::fclose(file); }
+/// Closed at its end.
+struct OpenFile {
+  explicit OpenFile(int opened) : descriptor(opened) {}
+  ~OpenFile() {
+    if (descriptor >= 0) ::close(descriptor);
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  int descriptor;
 };
-using FilePtr = std::unique_ptr<std::FILE, Close>;
 
 /// Where nobody asked for a file, none is worth a longer wait.
 constexpr std::uintmax_t kMostUnasked = std::uintmax_t{32} << 20U;
@@ -244,24 +250,23 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t 
   // Before it is opened, and behind that: another may stand there now.
   if (regular_only && !is_regular(::stat(path.c_str(), &found)))
     return fail(Errc::file, formatted("{} is no regular file", path.string()));
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular_only ? O_NONBLOCK | O_NOCTTY : 0));
-  const FilePtr file(fd < 0 ? nullptr : ::fdopen(fd, "rb"));
-  if (!file) return fail(Errc::file, formatted("cannot open {}: {}", path.string(), why(errno)));
-  if (regular_only && !is_regular(::fstat(fd, &found)))
+  const OpenFile file(
+      ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular_only ? O_NONBLOCK | O_NOCTTY : 0)));
+  if (file.descriptor < 0)
+    return fail(Errc::file, formatted("cannot open {}: {}", path.string(), why(errno)));
+  if (regular_only && !is_regular(::fstat(file.descriptor, &found)))
     return fail(Errc::file, formatted("{} is no regular file", path.string()));
   if (regular_only) max_bytes = std::min(max_bytes, kMostUnasked);
   std::string content;
   char chunk[65536];
   for (;;) {
-    const std::size_t got = std::fread(chunk, 1, sizeof chunk, file.get());
-    content.append(chunk, got);
+    const auto got = ::read(file.descriptor, chunk, sizeof chunk);
+    if (got < 0) return fail(Errc::file, formatted("cannot read {}: {}", path.string(), why(errno)));
+    if (got == 0) return content;
+    content.append(chunk, static_cast<std::size_t>(got));
     if (content.size() > max_bytes)
       return fail(Errc::file, formatted("{} is larger than {} bytes", path.string(), max_bytes));
-    if (got < sizeof chunk) break;
   }
-  if (std::ferror(file.get()) != 0)
-    return fail(Errc::file, formatted("cannot read {}: {}", path.string(), why(errno)));
-  return content;
 }
 
 Result<void> check_writable(const std::filesystem::path& path) {

@@ -37,6 +37,20 @@ bool only_reads(const command::Command& command, const command::Arguments& argum
          command.effect_with(arguments) == Effect::reads && !session.url().starts_with("replay:");
 }
 
+/// Whether the line names objects by address, and each is one that every drive has.
+bool names_common_objects(const command::Command& command, const command::Arguments& arguments) {
+  bool any = false;
+  for (const auto& parameter : command.parameters) {
+    if (parameter.kind != command::Kind::object) continue;
+    for (const auto& word : arguments.all(parameter.name)) {
+      const auto object = parse_object_address(word);
+      if (!object || !drive::stops_a_drive(*object)) return false;
+      any = true;
+    }
+  }
+  return any;
+}
+
 /// A gateway passes on no boot-up: another drive may be at the node since the last line.
 void doubt_unheard(session::Session& session, std::span<const std::uint8_t> nodes) {
   if (session.gateway() == nullptr) return;
@@ -52,15 +66,16 @@ void Shell::be_wary(Run& run, const command::Arguments& arguments) {
   auto nodes = run.context.nodes;
   doubt_unheard(session, nodes);
   const bool any = profile == nullptr || profile->is_generic() || profile->of_file;
-  // Another drive may be there than the one that the user named.
+  // Another drive may be there than the one that the user named; and what every drive has needs no question.
+  const bool asks_first = any && !names_common_objects(*run.command, arguments);
   session.options().checks_numbers =
-      !any && !run.command->way_out && only_reads(*run.command, arguments, session);
+      !asks_first && !run.command->way_out && only_reads(*run.command, arguments, session);
   const bool is_decided = profile != nullptr && drive::has_access_alarms(profile->rules);
   // Another drive may be there since its boot-up, and what an earlier line named may be wrong.
   // A stop goes out before anything is read.
   if (is_decided || run.command->way_out)
     nodes.clear();
-  else if (!any || !only_reads(*run.command, arguments, session))
+  else if (!asks_first || !only_reads(*run.command, arguments, session))
     std::erase_if(nodes, [&](std::uint8_t node) { return session.wary_of(node) == nullptr; });
   if (session.modbus() == nullptr) session::consider_numbers(session, nodes);
   if (profile != nullptr) learn_family(session, run.context.nodes, *profile);

@@ -39,15 +39,18 @@ std::vector<fs::path> named_folders() {
   return out;
 }
 
-/// Those that are there without a word: the user's own, and the program's.
-std::vector<fs::path> found_folders() {
-  std::vector<fs::path> out;
-  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
-    out.push_back(fs::path(config) / "servoctl/drives");
-  else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-    out.push_back(fs::path(home) / ".config/servoctl/drives");
-  if (auto own = own_folder()) out.push_back(std::move(*own));
-  return out;
+/// Those that are there without a word: the user's own, and the program's. Looked for once.
+const std::vector<fs::path>& found_folders() {
+  static const auto found = [] {
+    std::vector<fs::path> out;
+    if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
+      out.push_back(fs::path(config) / "servoctl/drives");
+    else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+      out.push_back(fs::path(home) / ".config/servoctl/drives");
+    if (auto own = own_folder()) out.push_back(std::move(*own));
+    return out;
+  }();
+  return found;
 }
 
 bool is_below(const fs::path& file, const fs::path& folder) {
@@ -56,16 +59,22 @@ bool is_below(const fs::path& file, const fs::path& folder) {
 
 /// Who can change the program can do whatever its data could.
 std::optional<uid_t> owner_of_program() {
-  struct stat info {};
-  return ::stat("/proc/self/exe", &info) == 0 ? std::optional(info.st_uid) : std::nullopt;
+  static const auto owner = []() -> std::optional<uid_t> {
+    struct stat info {};
+    return ::stat("/proc/self/exe", &info) == 0 ? std::optional(info.st_uid) : std::nullopt;
+  }();
+  return owner;
 }
 
 /// Beside the files of a family, and none by itself.
 constexpr std::string_view kTopics = ".topics.toml";
 
-void find_in(const fs::path& folder, std::vector<Family>& out) {
+/// Adds the families of a folder; `inner`: where to put its folders.
+void find_in(const fs::path& folder, std::vector<Family>& out, std::vector<fs::path>* inner) {
   std::error_code error;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (std::error_code not_a_folder; inner != nullptr && it->is_directory(not_a_folder))
+      inner->push_back(it->path());
     const auto extension = it->path().extension();
     if (extension != ".eds" && extension != ".dcf" && extension != ".xml" && extension != ".toml") continue;
     if (it->path().string().ends_with(kTopics)) continue;
@@ -79,12 +88,12 @@ void find_in(const fs::path& folder, std::vector<Family>& out) {
 
 std::vector<fs::path> drive_folders() {
   auto out = named_folders();
-  for (auto& folder : found_folders()) out.push_back(std::move(folder));
+  out.insert(out.end(), found_folders().begin(), found_folders().end());
   return out;
 }
 
 Result<void> check_family_file(const fs::path& file) {
-  static const auto found = found_folders();
+  const auto& found = found_folders();
   const auto holds = [&](const fs::path& folder) { return is_below(file, folder); };
   const auto named = named_folders();
   if (std::any_of(named.begin(), named.end(), holds) || std::none_of(found.begin(), found.end(), holds))
@@ -99,10 +108,9 @@ Result<void> check_family_file(const fs::path& file) {
 std::vector<Family> find_families(std::span<const fs::path> folders) {
   std::vector<Family> out;
   for (const auto& folder : folders) {
-    find_in(folder, out);
-    std::error_code error;
-    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
-      if (std::error_code not_a_folder; it->is_directory(not_a_folder)) find_in(it->path(), out);
+    std::vector<fs::path> inner;
+    find_in(folder, out, &inner);
+    for (const auto& each : inner) find_in(each, out, nullptr);
   }
   std::sort(out.begin(), out.end(), [](const Family& a, const Family& b) { return a.name < b.name; });
   return out;

@@ -51,10 +51,8 @@ Result<void> add_faults(Profile& profile, const fs::path& path) {
   return {};
 }
 
-Result<void> add_rules(Profile& profile, const fs::path& path) {
-  const auto text = read_file(path);
-  if (!text) return fail(text.error());
-  auto rules = parse_rules(*text, path.string(), std::move(profile.rules));
+Result<void> add_rules(Profile& profile, const fs::path& path, std::string_view text) {
+  auto rules = parse_rules(text, path.string(), std::move(profile.rules));
   if (!rules) return fail(rules.error());
   profile.rules = std::move(*rules);
   return {};
@@ -71,9 +69,8 @@ struct Part {
 };
 /// In the order they need each other: the objects table annotates the dictionary.
 constexpr Part kParts[] = {
-    {".toml", add_rules},        {".eds", add_dictionary},           {".dcf", add_dictionary},
-    {".xml", add_dictionary},    {".objects.csv", add_object_notes}, {".params.csv", add_parameters},
-    {".faults.csv", add_faults},
+    {".eds", add_dictionary},           {".dcf", add_dictionary},        {".xml", add_dictionary},
+    {".objects.csv", add_object_notes}, {".params.csv", add_parameters}, {".faults.csv", add_faults},
 };
 
 /// One data sheet is enough: the first there is.
@@ -92,13 +89,9 @@ constexpr int kMostAncestors = 4;
 
 Result<Profile> load_family(std::string_view name, std::span<const fs::path> folders, int ancestors);
 
-Result<Profile> load_parent(const Family& family, std::span<const fs::path> folders, int ancestors) {
-  std::error_code ignored;
-  const auto path = with_extension(family.stem, ".toml");
-  if (!fs::exists(path, ignored)) return Profile{};
-  const auto text = read_family_file(path);
-  if (!text) return fail(text.error());
-  const auto parent = parent_of(*text);
+Result<Profile> load_parent(const fs::path& path, std::string_view rules, std::span<const fs::path> folders,
+                            int ancestors) {
+  const auto parent = parent_of(rules);
   if (parent.empty()) return Profile{};
   if (ancestors == kMostAncestors)
     return fail(Errc::file,
@@ -111,17 +104,23 @@ Result<Profile> load_parent(const Family& family, std::span<const fs::path> fold
 }
 
 Result<Profile> load_parts(const Family& family, std::span<const fs::path> folders, int ancestors) {
-  auto parent = load_parent(family, folders, ancestors);
+  std::error_code ignored;
+  const auto rules = rules_file(family);
+  const bool has_rules = fs::exists(rules, ignored);
+  const auto text = has_rules ? read_family_file(rules) : Result<std::string>();
+  if (!text) return fail(text.error());
+  auto parent = load_parent(rules, *text, folders, ancestors);
   if (!parent) return parent;
   auto profile = std::move(*parent);
   profile.family = family.name;
   profile.warnings.clear();
   bool has_sheet = false;
-  std::error_code ignored;
   if (auto topics = with_extension(family.stem, kTopics); fs::exists(topics, ignored)) {
     if (const auto trusted = check_family_file(topics); !trusted) return fail(trusted.error());
     profile.topic_files.insert(profile.topic_files.begin(), std::move(topics));
   }
+  if (has_rules)
+    if (const auto added = add_rules(profile, rules, *text); !added) return fail(added.error());
   for (const auto& part : kParts) {
     const auto path = with_extension(family.stem, part.extension);
     if (!fs::exists(path, ignored)) continue;
@@ -226,10 +225,11 @@ const od::Parameter* Profile::parameter(ObjectAddress object) const {
 namespace {
 
 /// To a family with faults of its own and no parent those of CiA 402. Without them it is as good as before.
-void add_standard_faults(Profile& profile, std::span<const Family> families) {
+void add_standard_faults(Profile& profile, std::span<const fs::path> folders) {
+  if (profile.is_generic() || profile.faults.empty() || !profile.parent_faults.empty()) return;
+  const auto families = find_families(folders);
   const auto* generic = find_family(families, kGenericFamily);
-  if (generic == nullptr || profile.is_generic() || profile.faults.empty() || !profile.parent_faults.empty())
-    return;
+  if (generic == nullptr) return;
   const auto path = with_extension(generic->stem, ".faults.csv");
   const auto text = read_family_file(path);
   if (!text) return;
@@ -240,7 +240,7 @@ Result<Profile> load_family(std::string_view family, std::span<const fs::path> f
   const auto families = find_families(folders);
   if (const auto* found = find_family(families, family)) {
     auto profile = load_parts(*found, folders, ancestors);
-    if (profile && ancestors == 0) add_standard_faults(*profile, families);
+    if (profile && ancestors == 0) add_standard_faults(*profile, folders);
     return profile;
   }
   std::vector<std::string> names;
@@ -270,7 +270,7 @@ Result<Profile> load_profile(std::string_view family, std::span<const fs::path> 
 
 Result<Profile> load_profile(const Family& family, std::span<const fs::path> folders) {
   auto profile = load_parts(family, folders, 0);
-  if (profile) add_standard_faults(*profile, find_families(folders));
+  if (profile) add_standard_faults(*profile, folders);
   return profile;
 }
 

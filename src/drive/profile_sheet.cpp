@@ -63,6 +63,8 @@ void take_sheet(Profile& profile, od::EdsFile& file) {
   if (profile.rules.identity.empty()) set_marks(profile.rules, identity_marks(file));
   if (is_drive(file.dictionary)) od::inherit(file.dictionary, profile.dictionary);
   profile.dictionary = std::move(file.dictionary);
+  profile.notes = std::move(file.notes);
+  profile.configured_node = file.node_id;
   if (profile.rules.name.empty()) profile.rules.name = file.device.product_name;
   if (profile.rules.vendor.empty()) profile.rules.vendor = file.device.vendor_name;
 }

@@ -1,5 +1,7 @@
 #include "drive/shared_profile.hpp"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <map>
 #include <mutex>
@@ -45,9 +47,10 @@ Result<std::shared_ptr<const Read>> known_or(std::string key, const Load& load) 
 }
 
 std::string state_of(const fs::path& file) {
-  std::error_code gone;
-  const auto time = fs::last_write_time(file, gone).time_since_epoch().count();
-  return formatted("\n{} {} {}", file.filename().string(), time, fs::file_size(file, gone));
+  struct stat info {};
+  if (::stat(file.c_str(), &info) != 0) info = {};
+  return formatted("\n{} {}.{} {}", file.filename().string(), info.st_mtim.tv_sec, info.st_mtim.tv_nsec,
+                   info.st_size);
 }
 
 /// What tells the files of a family from what they were before they were changed.

@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "base/format.hpp"
 #include "base/number.hpp"
@@ -41,7 +41,7 @@ class Checker {
     for (const auto* section : lists) check(*section);
     if (lists.empty()) return;
     for (const auto& object : present_->sections)
-      if (object.second != nullptr && listed_[object.first] == nullptr)
+      if (object.second != nullptr && !listed_.contains(object.first))
         findings_->add(Severity::warning, object.second->line, 1, "not-listed",
                        formatted("[{}] is in no object list", object.second->name),
                        "add it to MandatoryObjects, OptionalObjects or ManufacturerObjects");
@@ -101,7 +101,7 @@ class Checker {
 
   const PresentObjects* present_;
   Findings* findings_;
-  std::vector<const IniKey*> listed_ = std::vector<const IniKey*>(0x10000);
+  std::unordered_map<std::uint64_t, const IniKey*> listed_;
 };
 
 }  // namespace

@@ -124,11 +124,12 @@ std::vector<NodeEvent> Session::take_events() {
   return out;
 }
 
-void Session::be_wary(std::uint8_t node, std::shared_ptr<const drive::Profile> profile, bool by_numbers) {
-  auto& wary = wary_[node & 0x7FU];
-  wary.profile = std::move(profile);
-  wary.boots.reset();
-  if (by_numbers) wary.boots = watch().boots(node);
+void Session::be_wary(std::uint8_t node, std::shared_ptr<const drive::Profile> profile) {
+  wary_[node & 0x7FU] = {.profile = std::move(profile)};
+}
+
+void Session::be_wary(const Identity& numbers, std::shared_ptr<const drive::Profile> profile) {
+  wary_[numbers.node & 0x7FU] = {std::move(profile), watch().boots(numbers.node), numbers.device_type};
 }
 
 std::unique_ptr<ObjectChannel> Session::lend_channel(std::uint8_t node) {

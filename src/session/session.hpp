@@ -128,14 +128,19 @@ class Session {
   /// What Options::protection says, for as long as the answer lives.
   Protection::Hold protect(Care care) { return {options_.protection, care}; }
   /// From now on the node is not asked for objects that the data of this family lack, because each such
-  /// request raises an alarm on its drives; null: it is asked for everything. `by_numbers`: the drive's own
-  /// numbers decided it, and not the user.
-  void be_wary(std::uint8_t node, std::shared_ptr<const drive::Profile> profile, bool by_numbers);
+  /// request raises an alarm on its drives; null: it is asked for everything.
+  void be_wary(std::uint8_t node, std::shared_ptr<const drive::Profile> profile);
+  /// The same, because the drive's own numbers decided it, and not the user.
+  void be_wary(const Identity& numbers, std::shared_ptr<const drive::Profile> profile);
   /// Null where there is none.
   const drive::Profile* wary_of(std::uint8_t node) const { return wary_[node & 0x7FU].profile.get(); }
   /// Whether its numbers decided since its last boot-up, and since it was silent last: later another drive
   /// may be there.
   bool is_considered(std::uint8_t node) const { return wary_[node & 0x7FU].boots == watch().boots(node); }
+  /// 1000h as the node said it when its numbers decided; empty where that may be another drive by now.
+  std::optional<std::uint32_t> device_type(std::uint8_t node) const {
+    return is_considered(node) ? wary_[node & 0x7FU].device_type : std::nullopt;
+  }
   /// The node was silent: another drive may be there, so its numbers decide again.
   void doubt_numbers(std::uint8_t node) { wary_[node & 0x7FU].boots.reset(); }
   /// Objects that a drive of no known family takes for an alarm, as far as they were looked for.
@@ -194,8 +199,9 @@ class Session {
   EnergisedNodes energised_;
   struct Wary {
     std::shared_ptr<const drive::Profile> profile;
-    std::optional<std::uint32_t>
-        boots;  ///< Boot count of the node when its numbers decided; empty: they did not.
+    /// Boot count of the node when its numbers decided; empty: they did not.
+    std::optional<std::uint32_t> boots = {};
+    std::optional<std::uint32_t> device_type = {};
   };
   std::array<Wary, 128> wary_;
   std::set<ObjectAddress> harmless_;

@@ -27,7 +27,7 @@ void consider_numbers(Session& session, const Identity& numbers) {
       if (auto profile = drive::shared_profile(family.name, folders)) found = std::move(*profile);
     }
   }
-  session.be_wary(numbers.node, std::move(found), true);
+  session.be_wary(numbers, std::move(found));
 }
 
 void consider_numbers(Session& session, std::span<const std::uint8_t> nodes) {
@@ -91,7 +91,7 @@ void be_wary_by_file(Session& session, std::uint8_t node, const drive::Profile& 
     fault.object_alarm = known->rules.fault.object_alarm;
     fault.sub_index_alarm = known->rules.fault.sub_index_alarm;
   }
-  if (drive::has_access_alarms(own->rules)) session.be_wary(node, std::move(own), false);
+  if (drive::has_access_alarms(own->rules)) session.be_wary(node, std::move(own));
 }
 
 }  // namespace
@@ -100,8 +100,7 @@ void be_wary_of_family(Session& session, std::uint8_t node, const drive::Profile
   const auto& where = session.options().drive_folders;
   if (profile.of_file && !profile.dictionary.empty()) return be_wary_by_file(session, node, profile);
   if (!where || !drive::has_access_alarms(profile.rules)) return;
-  if (auto shared = drive::shared_profile(profile.family, where()))
-    session.be_wary(node, std::move(*shared), false);
+  if (auto shared = drive::shared_profile(profile.family, where())) session.be_wary(node, std::move(*shared));
 }
 
 std::string_view access_alarm(const Session& session, std::uint8_t node, ObjectAddress object) {

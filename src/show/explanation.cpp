@@ -42,10 +42,11 @@ Explanation of_object(const drive::Profile& profile, const od::Object& object, b
       formatted("0x{:04X}: {}", object.index, object.name),
       object.name_zh.empty() ? std::string() : formatted("0x{:04X}：{}", object.index, object.name_zh));
   topic.object = ObjectAddress{object.index, 0};
-  std::vector<report::Record> records;
+  report::Table table;
   for (const auto& entry : object.entries)
-    records.push_back(object_record(profile, object, entry, {}, chinese));
-  return {std::move(topic), Found::object, {}, object_table(std::move(records))};
+    add_object_row(table, object_record(profile, object, entry, chinese));
+  explain_marks(table);
+  return {std::move(topic), Found::object, {}, std::move(table)};
 }
 
 /// Whether the text names an entry, not the object it is of.

@@ -31,10 +31,11 @@ Value shown_default(const drive::Meaning& meaning, const od::Entry& entry) {
   return drive::plain_text(meaning, value->value);
 }
 
-std::string denotation_of(std::span<const od::EntryNote> notes, ObjectAddress address) {
-  const auto found = std::find_if(notes.begin(), notes.end(),
-                                  [&](const od::EntryNote& note) { return note.address == address; });
-  return found == notes.end() ? std::string() : found->denotation;
+std::string denotation_of(const std::vector<od::EntryNote>& notes, ObjectAddress address) {
+  const auto found =
+      std::lower_bound(notes.begin(), notes.end(), address,
+                       [](const od::EntryNote& note, ObjectAddress at) { return note.address < at; });
+  return found == notes.end() || found->address != address ? std::string() : found->denotation;
 }
 
 const std::vector<od::EnumLabel>& labels_of(const drive::Meaning& meaning) {
@@ -50,7 +51,7 @@ std::string unit_of(const drive::Meaning& meaning) {
 }  // namespace
 
 Record object_record(const drive::Profile& profile, const od::Object& object, const od::Entry& entry,
-                     std::span<const od::EntryNote> notes, bool chinese) {
+                     bool chinese) {
   // A panel parameter has its Chinese name, unit and labels in the parameter table.
   const auto target = drive::target_at(&profile, entry.address);
   const auto meaning = drive::meaning(target, 0);
@@ -66,7 +67,7 @@ Record object_record(const drive::Profile& profile, const od::Object& object, co
           {"default_text", shown_default(meaning, entry), Show::text, "default"},
           {"default", default_of(entry.default_value), Show::json},
           {"value", default_of(entry.configured)},
-          {"denotation", report::text_or_null(denotation_of(notes, entry.address))},
+          {"denotation", report::text_or_null(denotation_of(profile.notes, entry.address))},
           {"index", entry.address.index, Show::json},
           {"sub", entry.address.sub, Show::json},
           {"name", entry.name, Show::json},
@@ -90,23 +91,20 @@ Record object_record(const drive::Profile& profile, const od::Object& object, co
           {"contradicted_fields", marks_record(doubts.contradicted), Show::json}};
 }
 
-report::Table object_table(std::vector<Record> records) {
-  report::Table table;
-  for (auto& record : records) {
-    report::List row;
-    for (auto& field : record) {
-      if (table.rows.empty()) table.columns.push_back({field.key, field.title, field.show});
-      row.push_back(std::move(field.value));
-    }
-    table.rows.push_back(std::move(row));
+void add_object_row(report::Table& table, Record record) {
+  report::List row;
+  row.reserve(record.size());
+  for (auto& field : record) {
+    if (table.rows.empty())
+      table.columns.push_back({std::move(field.key), std::move(field.title), field.show});
+    row.push_back(std::move(field.value));
   }
-  explain_marks(table);
-  return table;
+  table.rows.push_back(std::move(row));
 }
 
 Record object_details(const drive::Profile& profile, const od::Object& object, const od::Entry& entry,
                       bool chinese) {
-  auto out = object_record(profile, object, entry, {}, chinese);
+  auto out = object_record(profile, object, entry, chinese);
   std::erase_if(out, [](const report::Field& field) { return field.key == "mark"; });
   for (auto& field : out)
     if (const auto* text = std::get_if<std::string>(&field.value.data());

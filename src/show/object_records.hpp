@@ -1,23 +1,20 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
 #include "drive/profile.hpp"
-#include "od/eds.hpp"
 #include "report/value.hpp"
 
 /// Objects of a dictionary as they are shown.
 namespace servoctl::show {
 
 /// One entry, with what the table of parameters says of it; its text fields are the columns of `objects`.
-/// `notes`: what the data sheet says beside the dictionary.
 report::Record object_record(const drive::Profile& profile, const od::Object& object, const od::Entry& entry,
-                             std::span<const od::EntryNote> notes, bool chinese);
+                             bool chinese);
 
-/// Entries as a table: of each what fits a line in text, everything in JSON.
-report::Table object_table(std::vector<report::Record> records);
+/// Adds a record as a row; the first one makes the columns.
+void add_object_row(report::Table& table, report::Record record);
 
 /// One entry in full, for people: with limits, the meanings of its values, and notes. In JSON as
 /// object_record().

@@ -31,14 +31,14 @@ bool StandardNames::is_drive(std::uint8_t node) {
   const auto known = drives_.find(node);
   if (known != drives_.end()) return known->second;
   auto& session = *desk_->session;
-  bool out = false;
+  auto type = session.device_type(node);
   if (const auto* identity = session.identities().find(node, session.watch().boots(node));
-      identity != nullptr && identity->device_type) {
-    out = (*identity->device_type & 0xFFFFU) == kDriveProfileNumber;
-  } else if (session.modbus() == nullptr) {
-    const auto type = session.upload(node, objects::kDeviceType);
-    out = type && (load_le(*type) & 0xFFFFU) == kDriveProfileNumber;
-  }
+      !type && identity != nullptr)
+    type = identity->device_type;
+  if (!type && session.modbus() == nullptr)
+    if (const auto read = session.upload(node, objects::kDeviceType); read)
+      type = static_cast<std::uint32_t>(load_le(*read));
+  const bool out = type && (*type & 0xFFFFU) == kDriveProfileNumber;
   drives_.emplace(node, out);
   return out;
 }

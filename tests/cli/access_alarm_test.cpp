@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -114,6 +115,19 @@ TEST_F(AccessAlarm, AWriteOfAnObjectThatTheFamilyLacksIsNotSent) {
       std::string::npos)
       << text();
   EXPECT_EQ(access_alarms(lines.frames), "");
+}
+
+/// Scripts poll the statusword: its name asks for 1000h, and nothing else is asked.
+TEST_F(AccessAlarm, WhatEveryDriveHasIsReadWithoutAskingWhoItIs) {
+  const auto requests = [&](std::string_view line) {
+    lines.forget_drives();
+    EXPECT_EQ(lines.perform(std::string(line), {}, false), 0) << text();
+    return std::count_if(lines.frames.begin(), lines.frames.end(),
+                         [](const can::Frame& frame) { return frame.id == 0x601; });
+  };
+  EXPECT_EQ(requests("read 0x6041 -n 1"), 2);
+  EXPECT_EQ(requests("read 0x6041 0x6061 -n 1"), 3);
+  EXPECT_EQ(requests("read 0x6041 0x6064 -n 1"), 3 + 2) << "1000h, 1018h:01 and 1018h:02 first";
 }
 
 /// The family that the user names may be wrong: the drive's numbers decide before such a request.
