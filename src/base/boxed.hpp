@@ -5,8 +5,8 @@
 
 namespace servoctl {
 
-/// A value that is kept elsewhere, so that a variant that may hold it stays small. Copies as the value does; one
-/// that was moved from holds none.
+/// A value that is kept elsewhere, so that a variant that may hold it stays small. Copies as the value does;
+/// one that was moved from holds none.
 template <class T>
 class Boxed {
  public:

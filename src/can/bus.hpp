@@ -63,7 +63,8 @@ class Bus {
   /// What people should know of the bus beside its frames, since the last call.
   virtual std::vector<std::string> take_notices() { return {}; }
 
-  /// How many CAN FD frames have come since it was opened: receive() does not give them. 0 where there are none.
+  /// How many CAN FD frames have come since it was opened: receive() does not give them. 0 where there are
+  /// none.
   virtual std::uint64_t fd_frames() const { return 0; }
 
   /// When the bus wants receive() called although its descriptor is not readable: something is due or kept

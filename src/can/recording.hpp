@@ -39,10 +39,10 @@ struct RecordingStrays {
   std::optional<RecordingDamage> damage;  ///< All frames in front of it were taken.
   /// The recording does not say in which base its numbers are: nothing was read. The line that asks.
   std::size_t open_base = 0;
-  unsigned assumed_base = 0;  ///< That of the identifiers, concluded from how the data are written.
+  unsigned assumed_base = 0;       ///< That of the identifiers, concluded from how the data are written.
   unsigned assumed_data_base = 0;  ///< That of the data, concluded from how the identifiers are written.
-  bool of_table = false;      ///< A table or a log of another tool, found by headings or words.
-  bool lacks_unit = false;    ///< Its times are integers of an unknown unit, and were not read.
+  bool of_table = false;           ///< A table or a log of another tool, found by headings or words.
+  bool lacks_unit = false;         ///< Its times are integers of an unknown unit, and were not read.
 
   void add_unknown(std::size_t number, std::string_view text = {}) {
     if (unknown++ > 0) return;

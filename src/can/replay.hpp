@@ -13,8 +13,9 @@ namespace servoctl::can {
 
 /// A bus that answers as it did when the file was recorded; any recording that for_each_frame() reads.
 /// `place` is the file, and behind `?channel=` the bus that answers where the file has several, behind
-/// `?columns=` or `&columns=` what ColumnChoice reads. Time is that of the recording: nobody waits. Errc::file when the file cannot be read, is damaged or holds no frame;
-/// Errc::usage where it has frames of several buses and none is named, or none of that one.
+/// `?columns=` or `&columns=` what ColumnChoice reads. Time is that of the recording: nobody waits.
+/// Errc::file when the file cannot be read, is damaged or holds no frame; Errc::usage where it has frames of
+/// several buses and none is named, or none of that one.
 ///
 /// Frames that only masters send (NMT, SDO requests, remote frames, LSS requests) are taken as sent by us:
 /// each frame sent must be among them, and what follows them in the recording is received after they were

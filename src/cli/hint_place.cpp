@@ -126,8 +126,7 @@ std::string with_place(std::string_view text, const ParsedLine& line) {
 Outcome with_place(Outcome outcome, const ParsedLine& line) {
   for (auto& error : outcome.errors) error.hint = with_place(error.hint, line);
   for (auto& notice : outcome.notices) notice = with_place(notice, line);
-  if (auto* table = outcome.result.table())
-    place_mends(*table, line, outcome.told);
+  if (auto* table = outcome.result.table()) place_mends(*table, line, outcome.told);
   return outcome;
 }
 

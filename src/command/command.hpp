@@ -94,7 +94,7 @@ struct Command {
   FamilyCheck family = FamilyCheck::by_effect;
   bool standard_without = false;      ///< Without a family it is about the objects of the standards.
   std::string_view families_in = {};  ///< The file of this parameter may name the families: then -d need not.
-  bool family_by_node = false;         ///< `-d 3=gsd600,4=da200` names a family for each node.
+  bool family_by_node = false;        ///< `-d 3=gsd600,4=da200` names a family for each node.
   std::string_view reads_without = {};  ///< Without this parameter it only reads, whatever `effect` says.
   Result<report::Value> (*run)(Context&, const Arguments&) = nullptr;
   /// Checks names and values by the dictionary alone (no session in the context), for lines that are to be

@@ -146,9 +146,9 @@ class Mailbox {
   bool cancelled_ = false;           ///< Nobody wants it any more.
   TimePoint waiting_since_;
   TimePoint deadline_ = kNever;
-  Bytes last_;             ///< The message read last, with its header.
-  bool counts_ = false;    ///< The slave counts its messages.
-  bool skipped_ = false;   ///< What comes next may be the one behind one that is lost.
+  Bytes last_;            ///< The message read last, with its header.
+  bool counts_ = false;   ///< The slave counts its messages.
+  bool skipped_ = false;  ///< What comes next may be the one behind one that is lost.
   std::deque<Event> events_;
   std::deque<canopen::Emergency> emergencies_;
   Statistics statistics_;

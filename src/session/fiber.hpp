@@ -9,8 +9,8 @@ namespace servoctl::session {
 /// One at a time, in the thread that made it.
 class Fiber {
  public:
-  /// Does not begin yet. `body` throws nothing, and waits in no handler of an exception. Throws std::bad_alloc
-  /// where there is no memory for a stack.
+  /// Does not begin yet. `body` throws nothing, and waits in no handler of an exception. Throws
+  /// std::bad_alloc where there is no memory for a stack.
   explicit Fiber(std::function<void()> body);
   Fiber(const Fiber&) = delete;
   Fiber& operator=(const Fiber&) = delete;

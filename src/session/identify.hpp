@@ -36,13 +36,14 @@ inline constexpr Duration kBeforeWrites = std::chrono::milliseconds(20);
 inline constexpr Duration kThoroughly = std::chrono::milliseconds(20);
 /// Where nothing is asked but who is there.
 inline constexpr Duration kScanning = std::chrono::milliseconds(100);
-/// Before a motor gets power, and before what is stored, or starts or restarts a drive: a slow one is heard as
-/// well.
+/// Before a motor gets power, and before what is stored, or starts or restarts a drive: a slow one is heard
+/// as well.
 inline constexpr Duration kBeforeMotion = std::chrono::milliseconds(250);
 
 /// Takes in what a second node of the same number may still answer to what was asked: for twice the time that
-/// the slowest answer took, up to 20 ms, but at least for `least`, from the last answer on. Where one has come twice,
-/// asks for what never changes to know better, and waits as long as the second answer took. Errors of the bus.
+/// the slowest answer took, up to 20 ms, but at least for `least`, from the last answer on. Where one has
+/// come twice, asks for what never changes to know better, and waits as long as the second answer took.
+/// Errors of the bus.
 Result<void> settle_duplicates(Session& session, std::span<const std::uint8_t> nodes, Duration least);
 
 /// Errc::refused when two nodes were noticed under this number.

@@ -21,10 +21,10 @@ struct PlannedWrite {
 
 /// The writes that lead from `present` to `wanted`, both over the same objects: only what differs. First the
 /// node-ID and the bitrate by the family's parameters, then the parameters (from 2000h on), the communication
-/// objects in an order that is taken (in_allowed_order()), the PDOs, and the heartbeat (1016h, 1017h); each in
-/// rising address. The PDOs change together by the procedure of CiA 301, 7.5.2.35, or the family's own: all
-/// that change invalid, then of each count 0, entries, count and parameters, then all COB-IDs as wanted. So
-/// none has the COB-ID that another still has, also when two exchange theirs. An assignment of fixed PDOs
+/// objects in an order that is taken (in_allowed_order()), the PDOs, and the heartbeat (1016h, 1017h); each
+/// in rising address. The PDOs change together by the procedure of CiA 301, 7.5.2.35, or the family's own:
+/// all that change invalid, then of each count 0, entries, count and parameters, then all COB-IDs as wanted.
+/// So none has the COB-ID that another still has, also when two exchange theirs. An assignment of fixed PDOs
 /// (1C10h to 1C2Fh) is written by count 0, entries, count. `profile` may be null.
 std::vector<PlannedWrite> plan_writes(const drive::Profile* profile, const Values& present,
                                       const Values& wanted);

@@ -21,8 +21,8 @@ Result<Duration> parse_heartbeat_time(std::string_view text);
 /// Reads `3=300ms` or `3=off`.
 Result<HeartbeatWatch> parse_heartbeat_watch(std::string_view text);
 
-/// The change of 1017h; without a family by CiA 301, 7.5.2.20 (U16, ms). Errc::usage where the family has none,
-/// or its limits forbid the time.
+/// The change of 1017h; without a family by CiA 301, 7.5.2.20 (U16, ms). Errc::usage where the family has
+/// none, or its limits forbid the time.
 Result<Change> producer_change(show::Desk& desk, std::uint8_t node, Duration time);
 
 /// The changes of 1016h that make a drive watch these nodes too: the entry that a node has already, or else a

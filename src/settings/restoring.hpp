@@ -30,7 +30,7 @@ struct Restored {
   bool failed = false;  ///< Beyond values that are outside of the limits and left as they are.
   RestoreEnd end = RestoreEnd::idle;
   std::vector<ObjectAddress> in_flash = {};  ///< As in session::RestoreOutcome.
-  std::filesystem::path before = {};  ///< Where the old values are, if any were noted.
+  std::filesystem::path before = {};         ///< Where the old values are, if any were noted.
 };
 
 /// Puts a backup into one node: checks identity, state and every value, shows what differs, asks, saves what

@@ -118,7 +118,8 @@ TEST(CabinetFile, SelectsAxesByNameGroupAndAllInTheOrderOfTheFile) {
 }
 
 TEST(CabinetFile, TellsWithLineAndColumnWhatItCannotUse) {
-  EXPECT_EQ(refused(with_axis("speeed = 1\n")), "cabinet.toml:6:1: unknown key 'speeed'|write one of bus, encoder, family, gear, group, "
+  EXPECT_EQ(refused(with_axis("speeed = 1\n")),
+            "cabinet.toml:6:1: unknown key 'speeed'|write one of bus, encoder, family, gear, group, "
             "heartbeat, limits, node, parameters, pdos, per_turn, serial or turn");
   EXPECT_EQ(refused(with_axis("nod = 1\n")), "cabinet.toml:6:1: unknown key 'nod'|did you mean node?");
   EXPECT_EQ(
@@ -165,16 +166,18 @@ TEST(CabinetFile, TellsWithLineAndColumnWhatItCannotUse) {
             "cabinet.toml has no bus|write [bus.main] with url = \"can0\"");
   EXPECT_EQ(refused("[bus.main]\nurl = \"can0\"\n"),
             "cabinet.toml has no axis|write [axis.NAME] with node and family");
-  EXPECT_EQ(refused("[bus.a]\nurl = \"can0\"\n[bus.b]\nurl = \"can0\"\n"),
-            "cabinet.toml:3:1: bus b is can0, and so is bus a|one interface is one bus: put its axes on one of them");
+  EXPECT_EQ(
+      refused("[bus.a]\nurl = \"can0\"\n[bus.b]\nurl = \"can0\"\n"),
+      "cabinet.toml:3:1: bus b is can0, and so is bus a|one interface is one bus: put its axes on one of them");
   EXPECT_TRUE(refused("[bus.main\n").starts_with("cabinet.toml:1:10: ")) << refused("[bus.main\n");
 }
 
 TEST(CabinetFile, RefusesTwoAxesAtOnePlaceAndOneNameForTwo) {
   EXPECT_EQ(refused(with_axis("[axis.lift]\nnode = 1\nfamily = \"ts\"\n")),
             "cabinet.toml:6:1: axis lift: node 1 on bus main is axis feeder already|");
-  EXPECT_EQ(refused("[bus.main]\nurl = \"can0\"\n[group.lift]\n[axis.lift]\nnode = 1\nfamily = \"ts\"\n"),
-            "cabinet.toml:4:1: 'lift' is the name of two things|axes and groups share their names: -n takes both");
+  EXPECT_EQ(
+      refused("[bus.main]\nurl = \"can0\"\n[group.lift]\n[axis.lift]\nnode = 1\nfamily = \"ts\"\n"),
+      "cabinet.toml:4:1: 'lift' is the name of two things|axes and groups share their names: -n takes both");
   EXPECT_EQ(refused("[bus.main]\nurl = \"can0\"\n[axis.\"f{1-3}\"]\nnode = \"1-2\"\nfamily = \"ts\"\n"),
             "cabinet.toml:3:1: axis f{1-3}: 3 names for 2 nodes|");
   EXPECT_EQ(refused("[bus.main]\nurl = \"can0\"\n[axis.\"f{3-1}\"]\nnode = \"1-2\"\nfamily = \"ts\"\n"),

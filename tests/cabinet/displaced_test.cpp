@@ -39,7 +39,8 @@ TEST_F(CabinetDisplaced, APlanSaysWhereItIsAndWritesNothing) {
   EXPECT_EQ(found[0].at, 1);
   ASSERT_FALSE(looks[0].plan);
   EXPECT_EQ(looks[0].plan.error().code, Errc::negative);
-  EXPECT_NE(looks[0].plan.error().message.find("(serial number 16 (0x00000010)) is at node-ID 1"), std::string::npos)
+  EXPECT_NE(looks[0].plan.error().message.find("(serial number 16 (0x00000010)) is at node-ID 1"),
+            std::string::npos)
       << looks[0].plan.error().message;
   EXPECT_EQ(fleet.drive(0).node(), 1);
 }

@@ -160,8 +160,7 @@ class Fleet {
   }
   static std::vector<std::string> results_of(const report::Value& answer) {
     std::vector<std::string> out;
-    for (std::size_t i = 0; i < answer.table()->rows.size(); ++i)
-      out.push_back(result_of(answer, i));
+    for (std::size_t i = 0; i < answer.table()->rows.size(); ++i) out.push_back(result_of(answer, i));
     return out;
   }
   /// What an axis holds of what the file says, past the bus.

@@ -40,8 +40,7 @@ class LocalBusTest : public testing::Test {
     std::filesystem::remove_all(runtime_);
   }
 
-  static std::unique_ptr<Bus> join(const char* name = "demo",
-                                   Duration patience = std::chrono::seconds(20)) {
+  static std::unique_ptr<Bus> join(const char* name = "demo", Duration patience = std::chrono::seconds(20)) {
     auto bus = open_local(name, patience);
     EXPECT_TRUE(bus) << bus.error().message;
     return std::move(*bus);

@@ -98,15 +98,16 @@ TEST_F(SdoLate, ARefusalThatComesTwiceIsNotThatOfTheWriteBehindIt) {
   EXPECT_EQ(result().error().code, Errc::timeout);
 }
 
-/// The second refusal is a copy, or for the first write: its confirmation is not taken for that of the second.
+/// The second refusal is a copy, or for the first write: its confirmation is not taken for that of the
+/// second.
 TEST_F(SdoLate, ARefusalThatComesTwiceLeavesOpenTheWriteBehindIt) {
   client.on_frame(frame("602#4060600000000000"), now);
   write_in_vain("> 602#2F60600000000000", 0);
   client.on_frame(frame("602#2F60600000000000"), now);
   client.start_download(kMode, {1}, now);
   play(client, now,
-       {"> 602#2F60600001000000", "< 582#8060600022000008", "< 582#8060600022000008", "< 582#6060600000000000",
-        "< 582#6060600000000000", "< 582#8060600022000008"});
+       {"> 602#2F60600001000000", "< 582#8060600022000008", "< 582#8060600022000008",
+        "< 582#6060600000000000", "< 582#6060600000000000", "< 582#8060600022000008"});
   EXPECT_EQ(result().error().code, Errc::timeout) << "the caller reads the object then";
 }
 

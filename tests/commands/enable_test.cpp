@@ -52,7 +52,8 @@ TEST_P(Enable, OneThatHoldsNothingOfTheMotionDoesNot) {
   EXPECT_TRUE(drive::is_energised(drive().power_state()));
 }
 
-INSTANTIATE_TEST_SUITE_P(Families, Enable, testing::Values("gsd600", "ts"), [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(Families, Enable, testing::Values("gsd600", "ts"),
+                         [](const auto& test) { return test.param; });
 
 }  // namespace
 }  // namespace servoctl::commands

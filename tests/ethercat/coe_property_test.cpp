@@ -86,7 +86,8 @@ RC_GTEST_PROP(CoeSlave, LostFramesLoseNoTruth, ()) {
     if (written) RC_ASSERT(times == 1U);
     if (times == 1U) RC_ASSERT(wire.server.written.back() == data);
     RC_LOG() << (written ? "written" : written.error().message) << '\n';
-    RC_ASSERT((written || written.error().code == Errc::timeout || written.error().abort_code == 0x0800'0022U));
+    RC_ASSERT(
+        (written || written.error().code == Errc::timeout || written.error().abort_code == 0x0800'0022U));
     wire.server.refuses = 0;
     const auto present = wire.server.objects[{0x2000, 1}];
     const auto read = wire.read(5);

@@ -108,8 +108,7 @@ TEST_F(PlanOfBitrates, ADryRunShowsTheFramesThatAreSent) {
     };
     EXPECT_EQ(std::count_if(world.sent.begin(), world.sent.end(), changes), 0) << "a dry run sends none";
     std::vector<std::string> shown;
-    for (const auto& row : planned->table()->rows)
-      shown.push_back(std::get<std::string>(row.back().data()));
+    for (const auto& row : planned->table()->rows) shown.push_back(std::get<std::string>(row.back().data()));
     world.restart_session();
     world.sent.clear();
     ASSERT_TRUE(run(world));

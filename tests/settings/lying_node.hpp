@@ -83,7 +83,7 @@ class LyingNode {
   LyingObjects objects;
   std::set<ObjectAddress> silent;
   std::set<ObjectAddress> late_once;  ///< The first request for one is lost.
-  std::set<ObjectAddress> alarming;  ///< A request for one is answered, and an EMCY sent.
+  std::set<ObjectAddress> alarming;   ///< A request for one is answered, and an EMCY sent.
   bool dead = false;
   std::size_t dies_after = 1'000'000;  ///< Requests.
   std::size_t requests = 0;
