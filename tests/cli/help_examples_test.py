@@ -36,6 +36,8 @@ OF_THE_MACHINE = r"((forward|backward): )?(longest round trip|最长往返时间
 # Other buses than that of the family in the line; the first beginning counts.
 BUSES = {
     "address 5": "sim:gsd600@1",
+    "eds verify": "sim:sv2@1",
+    "eds learn": "sim:sv2@1",
     "cabinet init -b can0 --family": "sim:gsd600@1,da200@2",
     "lss scan --vendor": "sim:sv2@3,sv2@4?lss",
     "lss scan": "sim:sv2@255,da200@255,gsd600@1?lss",
