@@ -1,6 +1,7 @@
 #include "base/file.hpp"
 #include "base/format.hpp"
 #include "command/command.hpp"
+#include "command/standard_scope.hpp"
 #include "command/trial_options.hpp"
 #include "od/data_sheet.hpp"
 #include "settings/dictionary_verdict.hpp"
@@ -33,6 +34,7 @@ Result<report::Value> run_eds_verify(Context& context, const Arguments& argument
   const std::string word(arguments.text("file"));
   const auto file = sheet_of(context, word);
   if (!file) return fail(file.error());
+  const StandardScope standard(context);
   const settings::CheckOptions options{.listed_only = arguments.has("--listed"),
                                        .factory = arguments.has("--factory")};
   std::vector<report::TestResult> results;

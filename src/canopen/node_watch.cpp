@@ -74,10 +74,12 @@ void NodeWatch::forget_period(std::uint8_t node) {
 /// A node that repeats itself while nobody takes its events is counted, not listed.
 void NodeWatch::on_emergency(const Emergency& emergency, TimePoint now) {
   auto& recent = emergencies_[emergency.node];
-  if (emergency.is_reset())
+  if (emergency.is_reset()) {
     recent.clear();
-  else
+  } else {
     recent.push_back(emergency);
+    ++nodes_[emergency.node].alarms;
+  }
   if (recent.size() > kMostEmergencies) recent.pop_front();
   const auto last = std::find_if(events_.rbegin(), events_.rend(),
                                  [&](const NodeEvent& event) { return event.node == emergency.node; });
@@ -172,6 +174,7 @@ void NodeWatch::forget(std::uint8_t node) {
   emergencies_.erase(node);
   nodes_[node].boots = before.boots;
   nodes_[node].losses = before.losses;
+  nodes_[node].alarms = before.alarms;
   nodes_[node].restarts = before.restarts;
   nodes_[node].power_ups = before.power_ups;
   nodes_[node].reset = before.reset;

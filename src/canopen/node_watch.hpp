@@ -82,6 +82,8 @@ class NodeWatch {
     const auto found = emergencies_.find(node);
     return found == emergencies_.end() ? no_emergencies_ : found->second;
   }
+  /// How many emergencies the node has sent that were no error reset.
+  std::uint32_t alarms(std::uint8_t node) const { return nodes_[node].alarms; }
   /// The node's 1014h holds this: emergencies come under its CAN-ID as well.
   void learn_emergency_id(std::uint8_t node, std::uint32_t cob_id) { emergency_ids_.learn(node, cob_id); }
   /// The node answers a master's questions and sends nothing by itself: its silence means nothing.
@@ -105,6 +107,7 @@ class NodeWatch {
     TimePoint reset_at{};
     std::uint32_t heartbeats = 0;
     std::uint32_t losses = 0;
+    std::uint32_t alarms = 0;
     std::optional<TimePoint> last;  ///< Last heartbeat since boot-up or loss.
     Duration period{};              ///< Longest interval between two heartbeats.
     std::uint32_t intervals = 0;    ///< Intervals measured.

@@ -43,6 +43,10 @@ std::string sharers_of(Session& session, std::uint8_t node);
 /// Whether the drive has power on its motor, and where two were noticed under this number, whether either
 /// has; one that has no statusword has none. Else as Session::upload().
 Result<bool> is_energised(Session& session, std::uint8_t node);
+/// The same of any axis of the node. The further ones (CiA 402-2: 800h higher each) are asked where 1000h
+/// says that it is a drive, until one is not there; no node that takes a request for a missing object for an
+/// alarm.
+Result<bool> is_any_axis_energised(Session& session, std::uint8_t node);
 
 /// Sends the node the NMT command that puts a new address in force; nothing for a power cycle. What was heard
 /// of it is forgotten: another may answer under its number from now on.

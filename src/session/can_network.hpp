@@ -166,6 +166,7 @@ class CanNetwork final : public Network {
     const std::deque<canopen::Emergency>& emergencies(std::uint8_t node) const override {
       return watch_->emergencies(node);
     }
+    std::uint32_t alarms(std::uint8_t node) const override { return watch_->alarms(node); }
 
    private:
     const canopen::NodeWatch* watch_;

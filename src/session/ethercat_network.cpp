@@ -124,7 +124,7 @@ void EtherCatNetwork::serve_node(EtherCatNode& node, ethercat::Ring& ring, TimeP
 void EtherCatNetwork::take_emergencies(EtherCatNode& node, TimePoint now) {
   while (const auto emergency = node.coe->mailbox().take_emergency()) {
     if (emergency->is_reset()) node.emergencies.clear();
-    if (!emergency->is_reset()) node.emergencies.push_back(*emergency);
+    if (!emergency->is_reset()) node.emergencies.push_back(*emergency), ++node.alarms;
     if (node.emergencies.size() > kKeptEmergencies) node.emergencies.pop_front();
     tell(node.number, *emergency, now);
   }
@@ -282,6 +282,11 @@ const std::deque<canopen::Emergency>& EtherCatNetwork::Records::emergencies(std:
   static const std::deque<canopen::Emergency> kNone;
   const auto* known = network_->find(node);
   return known != nullptr ? known->emergencies : kNone;
+}
+
+std::uint32_t EtherCatNetwork::Records::alarms(std::uint8_t node) const {
+  const auto* known = network_->find(node);
+  return known != nullptr ? known->alarms : 0;
 }
 
 }  // namespace servoctl::session

@@ -120,6 +120,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
     std::uint32_t boots(std::uint8_t node) const override;
     std::uint32_t heartbeats(std::uint8_t node) const override;
     const std::deque<canopen::Emergency>& emergencies(std::uint8_t node) const override;
+    std::uint32_t alarms(std::uint8_t node) const override;
 
    private:
     const EtherCatNetwork* network_;

@@ -68,6 +68,7 @@ struct EtherCatNode {
   unsigned missed = 0;  ///< Looks in succession that it did not answer.
   bool gone = false;
   std::deque<canopen::Emergency> emergencies;
+  std::uint32_t alarms = 0;
 };
 
 }  // namespace servoctl::session

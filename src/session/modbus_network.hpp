@@ -78,6 +78,7 @@ class ModbusNetwork final : public Network {
     std::uint32_t boots(std::uint8_t) const override { return 0; }
     std::uint32_t heartbeats(std::uint8_t) const override { return 0; }
     const std::deque<canopen::Emergency>& emergencies(std::uint8_t) const override { return none_; }
+    std::uint32_t alarms(std::uint8_t) const override { return 0; }
 
    private:
     std::deque<canopen::Emergency> none_;

@@ -116,6 +116,8 @@ class NodeRecords {
   virtual std::uint32_t heartbeats(std::uint8_t node) const = 0;
   /// The last emergencies since its start or error reset, oldest first, at most eight.
   virtual const std::deque<canopen::Emergency>& emergencies(std::uint8_t node) const = 0;
+  /// How many emergencies it has sent that were no error reset.
+  virtual std::uint32_t alarms(std::uint8_t node) const = 0;
 };
 
 /// One wire with its nodes, and the clock that belongs to it. Everything above knows nodes by their number

@@ -1,20 +1,18 @@
 #include "session/object_survey.hpp"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include "base/format.hpp"
 #include "drive/standard_objects.hpp"
+#include "session/addressing.hpp"
 
 namespace servoctl::session {
 namespace {
 
 /// Few enough that little is asked after an alarm, and that silence costs little.
 constexpr std::size_t kAtOnce = 16;
-
-std::vector<canopen::Emergency> emergencies_of(Session& session, std::uint8_t node) {
-  const auto& heard = session.watch().emergencies(node);
-  return {heard.begin(), heard.end()};
-}
 
 bool is_of_one_object(const Error& error) {
   return error.code == Errc::sdo_abort || error.code == Errc::protocol;
@@ -23,7 +21,7 @@ bool is_of_one_object(const Error& error) {
 }  // namespace
 
 ObjectSurvey::ObjectSurvey(Session& session, std::uint8_t node, OnAlarm on_alarm)
-    : session_(&session), node_(node), on_alarm_(on_alarm), heard_(emergencies_of(session, node)) {}
+    : session_(&session), node_(node), on_alarm_(on_alarm), heard_(session.watch().alarms(node)) {}
 
 Result<std::vector<Result<Bytes>>> ObjectSurvey::read(std::span<const ObjectAddress> objects) {
   std::vector<Result<Bytes>> out;
@@ -35,6 +33,8 @@ Result<std::vector<Result<Bytes>>> ObjectSurvey::read(std::span<const ObjectAddr
   }
   return out;
 }
+
+Result<bool> ObjectSurvey::is_enabled() { return is_any_axis_energised(*session_, node_); }
 
 std::vector<Result<Bytes>> ObjectSurvey::ask(std::span<const ObjectAddress> objects) {
   std::vector<SdoRequest> requests;
@@ -70,15 +70,14 @@ Result<void> ObjectSurvey::check_alive(const Error& silence) {
 }
 
 Result<void> ObjectSurvey::check_alarms(ObjectAddress last) {
-  auto now = emergencies_of(*session_, node_);
-  const bool is_new = !now.empty() && now != heard_ && !now.back().is_reset();
-  heard_ = std::move(now);
-  if (!is_new || on_alarm_ == OnAlarm::go_on) return {};
-  return fail(
-      drive_error(Errc::refused, node_,
-                  formatted("it sent the EMCY {:04X}h during the reads up to {}; nothing more is read",
-                            heard_.back().code, to_string(last)),
-                  "`status` and `fault show` tell whether the drive is in a fault"));
+  const auto before = std::exchange(heard_, session_->watch().alarms(node_));
+  if (heard_ == before || on_alarm_ == OnAlarm::go_on) return {};
+  const auto& known = session_->watch().emergencies(node_);
+  const auto what = known.empty() ? std::string("an EMCY") : formatted("the EMCY {:04X}h", known.back().code);
+  return fail(drive_error(
+      Errc::refused, node_,
+      formatted("it sent {} during the reads up to {}; nothing more is read", what, to_string(last)),
+      "`status` and `fault show` tell whether the drive is in a fault"));
 }
 
 }  // namespace servoctl::session

@@ -8,7 +8,6 @@
 #include "base/bytes.hpp"
 #include "base/object_address.hpp"
 #include "base/result.hpp"
-#include "canopen/emergency.hpp"
 #include "session/session.hpp"
 
 namespace servoctl::session {
@@ -26,6 +25,9 @@ class ObjectSurvey {
   /// answer a read of 1000h either, Errc::refused after an EMCY, Errc::bus, Errc::interrupted.
   Result<std::vector<Result<Bytes>>> read(std::span<const ObjectAddress> objects);
 
+  /// Whether an axis of the node is enabled now: see is_any_axis_energised().
+  Result<bool> is_enabled();
+
   /// Reads that were sent.
   std::size_t requests() const { return requests_; }
 
@@ -40,7 +42,7 @@ class ObjectSurvey {
   std::uint8_t node_;
   OnAlarm on_alarm_;
   std::size_t requests_ = 0;
-  std::vector<canopen::Emergency> heard_;  ///< Before the last read.
+  std::uint32_t heard_;  ///< EMCYs before the last read.
 };
 
 }  // namespace servoctl::session

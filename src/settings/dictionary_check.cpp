@@ -5,9 +5,7 @@
 
 #include "base/format.hpp"
 #include "drive/access_alarms.hpp"
-#include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
-#include "session/addressing.hpp"
 #include "session/object_survey.hpp"
 #include "session/online_dictionary.hpp"
 #include "session/option_scope.hpp"
@@ -135,43 +133,39 @@ class DictionaryReader {
       desk_->notices.push_back(
           formatted("node {} does not describe its objects: types and access were not compared", node_));
     }
-    auto energised = session::is_energised(*session_, node_);
-    if (!energised) return fail(energised.error());
-    energised = *energised || is_other_axis_energised();
-    if (*energised || session_->wary_of(node_) != nullptr) {
-      desk_->notices.push_back(
-          *energised
-              ? formatted("node {} is enabled: it was not asked for objects that the file does not list",
-                          node_)
-              : formatted(
-                    "node {} raises an alarm if it is asked for an object that it does not have: it was "
-                    "asked only for those of the file",
-                    node_));
+    if (session_->wary_of(node_) != nullptr) {
+      desk_->notices.push_back(formatted(
+          "node {} raises an alarm if it is asked for an object that it does not have: it was asked only for "
+          "those of the file",
+          node_));
       return {};
     }
-    if (const auto all = answers_everything(); !all || *all) return all.map([](bool) {});
+    if (const auto may = may_be_probed(); !may || !*may) return may.map([](bool) {});
     const auto* standard = desk_->standard != nullptr ? &desk_->standard->dictionary : nullptr;
-    return probe_unlisted(survey_, file_->dictionary, standard, judge_, out_);
+    const auto probed = probe_unlisted(survey_, file_->dictionary, standard, judge_, out_);
+    if (!probed) return fail(probed.error());
+    if (!*probed) tell_enabled();
+    return {};
   }
 
-  /// CiA 402: the objects of each further axis are 800h higher.
-  bool is_other_axis_energised() const {
-    for (unsigned index = objects::kStatusword.index + 0x800U; index < 0xA000U; index += 0x800U) {
-      const auto word = out_.values.find({static_cast<std::uint16_t>(index), 0});
-      if (word != out_.values.end() &&
-          drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(word->second)))))
-        return true;
-    }
-    return false;
+  void tell_enabled() {
+    desk_->notices.push_back(
+        out_.probed == 0
+            ? formatted("node {} is enabled: it was not asked for objects that the file does not list", node_)
+            : formatted(
+                  "node {} is enabled now: it was asked for no more objects that the file does not list",
+                  node_));
   }
 
-  /// Whether the node answers whatever it is asked for: then nothing tells which objects it has.
-  Result<bool> answers_everything() {
+  /// Not a drive that is enabled, nor one that answers reads of any object: then nothing tells which it has.
+  Result<bool> may_be_probed() {
+    const auto enabled = survey_.is_enabled();
+    if (!enabled) return enabled;
+    if (*enabled) tell_enabled();
+    if (*enabled) return false;
     std::vector<ObjectAddress> unlikely;
-    for (const unsigned index : {0x5E3BU, 0x4D71U})
-      if (const ObjectAddress object{static_cast<std::uint16_t>(index), 0};
-          file_->dictionary.object(object.index) == nullptr)
-        unlikely.push_back(object);
+    for (const ObjectAddress object : {ObjectAddress{0x5E3B, 0}, ObjectAddress{0x4D71, 0}})
+      if (file_->dictionary.object(object.index) == nullptr) unlikely.push_back(object);
     const auto answers = survey_.read(unlikely);
     if (!answers) return fail(answers.error());
     const bool all = !answers->empty() && std::all_of(answers->begin(), answers->end(),
@@ -179,7 +173,7 @@ class DictionaryReader {
     if (all)
       desk_->notices.push_back(
           formatted("node {} answers reads of any object: it was asked only for those of the file", node_));
-    return all;
+    return !all;
   }
 
   show::Desk* desk_;

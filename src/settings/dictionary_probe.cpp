@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "base/format.hpp"
@@ -26,18 +27,18 @@ class Prober {
          EntryJudge& judge, DictionaryCheck& out)
       : survey_(&survey), file_(&file), standard_(standard), judge_(&judge), out_(&out) {}
 
-  Result<void> run() {
-    if (const auto subs = ask(unlisted_subs()); !subs) return subs;
+  Result<bool> run() {
+    if (const auto subs = ask(unlisted_subs()); !subs || !*subs) return subs;
     std::set<ObjectAddress> next;
     for (const auto& object : file_->objects()) add_neighbours(object.index, next);
     if (standard_ != nullptr)
       for (const auto& object : standard_->objects()) add(object.index, next);
     while (!next.empty()) {
       found_.clear();
-      if (const auto asked = ask(std::exchange(next, {})); !asked) return asked;
+      if (const auto asked = ask(std::exchange(next, {})); !asked || !*asked) return asked;
       for (const auto object : found_) add_neighbours(object.index, next);
     }
-    return {};
+    return true;
   }
 
  private:
@@ -68,24 +69,33 @@ class Prober {
       next.insert(address);
   }
 
-  Result<void> ask(const std::set<ObjectAddress>& wanted) {
+  Result<bool> ask(const std::set<ObjectAddress>& wanted) {
+    constexpr std::size_t kPart = 64;
     const std::vector<ObjectAddress> objects(wanted.begin(), wanted.end());
-    const auto answers = survey_->read(objects);
-    if (!answers) return fail(answers.error());
-    out_->probed += objects.size();
-    for (std::size_t i = 0; i < objects.size(); ++i)
-      if (is_there((*answers)[i])) tell(objects[i], (*answers)[i]);
-    return {};
+    for (std::size_t at = 0; at < objects.size(); at += kPart) {
+      const auto enabled = survey_->is_enabled();
+      if (!enabled) return enabled;
+      if (*enabled) return false;
+      const auto part = std::span(objects).subspan(at, std::min(kPart, objects.size() - at));
+      const auto answers = survey_->read(part);
+      if (!answers) return fail(answers.error());
+      out_->probed += part.size();
+      for (std::size_t i = 0; i < part.size(); ++i)
+        if (is_there((*answers)[i])) tell(part[i], (*answers)[i]);
+    }
+    return true;
   }
 
   void tell(ObjectAddress address, const Result<Bytes>& answer) {
     found_.push_back(address);
     const auto* known = standard_ != nullptr ? standard_->find(address) : nullptr;
-    const auto* object = file_->object(address.index);
+    const auto* listed = file_->object(address.index);
+    od::Object object = listed != nullptr ? *listed : od::Object{};
+    object.index = address.index;
     od::Entry entry;
     entry.address = address;
     entry.name = known != nullptr ? known->name : std::string();
-    judge_->add(object != nullptr ? *object : od::Object{}, entry, Difference::unlisted, {},
+    judge_->add(object, entry, Difference::unlisted, {},
                 answer ? size_text(answer->size()) : std::string("write-only"));
   }
 
@@ -100,7 +110,7 @@ class Prober {
 
 }  // namespace
 
-Result<void> probe_unlisted(session::ObjectSurvey& survey, const od::Dictionary& file,
+Result<bool> probe_unlisted(session::ObjectSurvey& survey, const od::Dictionary& file,
                             const od::Dictionary* standard, EntryJudge& judge, DictionaryCheck& out) {
   return Prober(survey, file, standard, judge, out).run();
 }

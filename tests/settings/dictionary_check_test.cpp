@@ -232,6 +232,14 @@ TEST_F(DictionaryCheckTest, AnEmergencyEndsTheReads) {
   EXPECT_TRUE(check({.listed_only = true}));
 }
 
+TEST_F(DictionaryCheckTest, AnEmergencyThatIsResetAtOnceEndsTheReadsToo) {
+  node().alarming = {{0x6083, 0}};
+  node().resets_alarms = true;
+  const auto checked = check({.listed_only = true});
+  ASSERT_FALSE(checked);
+  EXPECT_EQ(checked.error().code, Errc::refused);
+}
+
 TEST_F(DictionaryCheckTest, WhatIsNotListedIsNotAskedForWhileTheDriveIsEnabled) {
   node().objects.values[{0x6041, 0}] = {0x37, 0x02};
   const auto checked = check();
@@ -275,10 +283,6 @@ TEST_F(DictionaryCheckTest, WhatTheDriveCannotTransferIsNotCalledUnreadable) {
 }
 
 TEST_F(DictionaryCheckTest, WhatIsNotListedIsNotAskedForWhileAnotherAxisIsEnabled) {
-  auto second = *file.dictionary.object(0x6041);
-  second.index = 0x6841;
-  second.entries.front().address.index = 0x6841;
-  file.dictionary.add(second);
   node().objects.values[{0x6841, 0}] = {0x37, 0x02};
   const auto checked = check();
   ASSERT_TRUE(checked);
@@ -295,7 +299,7 @@ TEST_F(DictionaryCheckTest, ADriveThatAnswersWhateverItIsAskedForIsNotProbed) {
 }
 
 TEST_F(DictionaryCheckTest, JunitHasAFailureForANodeThatWasNotCompared) {
-  const Error silence{.code = Errc::timeout, .message = "no answer"};
+  const auto silence = make_error(Errc::timeout, "no answer");
   const auto xml = report::junit_xml({dictionary_test(9, silence)});
   EXPECT_NE(xml.find("eds verify node 9"), std::string::npos) << xml;
   EXPECT_NE(xml.find("failures=\"1\""), std::string::npos) << xml;

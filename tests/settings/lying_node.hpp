@@ -84,6 +84,7 @@ class LyingNode {
   std::set<ObjectAddress> silent;
   std::set<ObjectAddress> late_once;  ///< The first request for one is lost.
   std::set<ObjectAddress> alarming;   ///< A request for one is answered, and an EMCY sent.
+  bool resets_alarms = false;
   bool dead = false;
   std::size_t dies_after = 1'000'000;  ///< Requests.
   std::size_t requests = 0;
@@ -98,7 +99,10 @@ class LyingNode {
                                frame.data[3]};
     const bool begins = (frame.data[0] & 0xE0U) == 0x40;
     if (begins && (silent.contains(object) || late_once.erase(object) > 0)) return;
-    if (begins && alarming.contains(object)) to.arrive("081#3081210000000000");
+    if (begins && alarming.contains(object)) {
+      to.arrive("081#3081210000000000");
+      if (resets_alarms) to.arrive("081#0000000000000000");
+    }
     server_.on_frame(frame, to.now());
     while (const auto out = server_.take_frame()) to.arrive(*out, std::chrono::milliseconds(1));
   }
