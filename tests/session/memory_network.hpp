@@ -130,6 +130,7 @@ class MemoryNetwork final : public Network, private NodeRecords {
   const std::deque<canopen::Emergency>& emergencies(std::uint8_t node) const override {
     return told(node).emergencies;
   }
+  std::uint32_t alarms(std::uint8_t) const override { return 0; }
 
   TimePoint now_{std::chrono::seconds(1)};
   std::map<std::uint8_t, MemoryNode> nodes_;
