@@ -89,8 +89,9 @@ class Prober {
   void tell(ObjectAddress address, const Result<Bytes>& answer) {
     found_.push_back(address);
     const auto* known = standard_ != nullptr ? standard_->find(address) : nullptr;
-    const auto* listed = file_->object(address.index);
-    od::Object object = listed != nullptr ? *listed : od::Object{};
+    const auto* whole = file_->object(address.index);
+    if (whole == nullptr && standard_ != nullptr) whole = standard_->object(address.index);
+    od::Object object = whole != nullptr ? *whole : od::Object{};
     object.index = address.index;
     od::Entry entry;
     entry.address = address;

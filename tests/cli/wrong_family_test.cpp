@@ -14,6 +14,7 @@ const std::map<std::string, std::string, std::less<>> kLines{
     {"defaults", "defaults"},
     {"diff", "diff node:1 factory"},
     {"disable", "disable"},
+    {"eds verify", "eds verify %missing.eds"},
     {"enable", "enable"},
     {"fault clear-history", "fault clear-history"},
     {"fault reset", "fault reset"},

@@ -60,7 +60,7 @@ TEST(ManPage, ShowsEveryExampleAsItIsTypedInAShell) {
 }
 
 TEST(ManPage, IsAsciiWithoutALineThatIsTakenForARequest) {
-  const std::set<std::string_view> requests{"\\\"", "TH", "SH", "SS", "TP", "PP", "nh", "ad", "br"};
+  const std::set<std::string_view> requests{"\\\"", "TH", "SH", "SS", "TP", "PP", "nh", "ad", "ds", "br"};
   for (const auto line : split(page(), '\n')) {
     EXPECT_FALSE(line.starts_with('\'')) << line;
     EXPECT_FALSE(line.ends_with(' ')) << line;
