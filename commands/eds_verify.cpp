@@ -46,9 +46,11 @@ Result<report::Value> run_eds_verify(Context& context, const Arguments& argument
       results.push_back(settings::dictionary_test(*file, *check));
       continue;
     }
-    context.errors.push_back(check.error());
     results.push_back(settings::dictionary_test(node, check.error()));
-    if (check.error().code == Errc::interrupted || check.error().code == Errc::bus) break;
+    const bool ends = check.error().code == Errc::interrupted || check.error().code == Errc::bus;
+    // The exit code is that of the first error: what ended the command, not a difference found before.
+    context.errors.insert(ends ? context.errors.begin() : context.errors.end(), check.error());
+    if (ends) break;
   }
   if (arguments.has("--junit"))
     if (const auto written =

@@ -48,7 +48,7 @@ bool is_blank(std::string_view cell) { return bare_value(cell).empty(); }
 
 bool has_data(const LogCells& cells) { return !std::all_of(cells.data.begin(), cells.data.end(), is_blank); }
 
-/// Up to the first cell that is empty; behind it none is filled.
+/// Up to the first cell that is empty; after it none is filled.
 bool read_log_bytes(const LogCells& cells, const LogNumbers& numbers, std::vector<std::uint8_t>& out) {
   out.clear();
   bool good = true;

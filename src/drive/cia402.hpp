@@ -5,7 +5,19 @@
 #include <string_view>
 #include <vector>
 
+#include "base/object_address.hpp"
+
 namespace servoctl::drive {
+
+/// Whether a device type (1000h) is that of a drive of CiA 402: 0192h in its low word.
+constexpr bool is_drive_type(std::uint64_t device_type) { return (device_type & 0xFFFFU) == 0x0192; }
+
+/// Axes of one node.
+inline constexpr unsigned kMostAxes = 8;
+/// The object of axis 1 to kMostAxes: those of each further axis are 800h higher (CiA 402-2).
+constexpr ObjectAddress of_axis(ObjectAddress object, unsigned number) {
+  return {static_cast<std::uint16_t>(object.index + (number - 1) * 0x800U), object.sub};
+}
 
 /// States of the power drive system (CiA 402-2, 8.2.3).
 enum class DriveState : std::uint8_t {

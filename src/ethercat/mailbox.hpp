@@ -148,7 +148,7 @@ class Mailbox {
   TimePoint deadline_ = kNever;
   Bytes last_;            ///< The message read last, with its header.
   bool counts_ = false;   ///< The slave counts its messages.
-  bool skipped_ = false;  ///< What comes next may be the one behind one that is lost.
+  bool skipped_ = false;  ///< What comes next may be the one after one that is lost.
   std::deque<Event> events_;
   std::deque<canopen::Emergency> emergencies_;
   Statistics statistics_;

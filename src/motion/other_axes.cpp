@@ -8,19 +8,11 @@
 namespace servoctl::motion {
 namespace {
 
-constexpr unsigned kMostAxes = 8;
-constexpr std::uint16_t kAxisStep = 0x0800;
-/// Low word of 1000h (CiA 402-2, device type).
-constexpr std::uint64_t kDriveProfile = 0x0192;
 constexpr Duration kAxisPause = std::chrono::milliseconds(5);
-
-ObjectAddress of_axis(ObjectAddress object, unsigned number) {
-  return {static_cast<std::uint16_t>(object.index + (number - 1) * kAxisStep), object.sub};
-}
 
 bool is_asked(session::Session& session, std::uint8_t node) {
   const auto type = session.upload(node, objects::kDeviceType);
-  return type && (load_le(*type) & 0xFFFF) == kDriveProfile;
+  return type && drive::is_drive_type(load_le(*type));
 }
 
 std::optional<std::uint16_t> read_word(session::Session& session, std::uint8_t node, const OtherAxis& axis) {
@@ -30,8 +22,8 @@ std::optional<std::uint16_t> read_word(session::Session& session, std::uint8_t n
 
 }  // namespace
 
-ObjectAddress OtherAxis::statusword_object() const { return of_axis(objects::kStatusword, number); }
-ObjectAddress OtherAxis::controlword_object() const { return of_axis(objects::kControlword, number); }
+ObjectAddress OtherAxis::statusword_object() const { return drive::of_axis(objects::kStatusword, number); }
+ObjectAddress OtherAxis::controlword_object() const { return drive::of_axis(objects::kControlword, number); }
 
 bool OtherAxis::may_be_energised() const {
   return !statusword || drive::is_energised(drive::decode_state(*statusword));
@@ -48,7 +40,7 @@ std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profil
                                   std::uint8_t node) {
   std::vector<OtherAxis> out;
   const bool is_known = profile != nullptr && !profile->is_generic();
-  for (unsigned number = 2; number <= kMostAxes; ++number) {
+  for (unsigned number = 2; number <= drive::kMostAxes; ++number) {
     OtherAxis axis{number, {}};
     if (is_known && profile->dictionary.find(axis.statusword_object()) == nullptr) break;
     if (!is_known && number == 2 && !is_asked(session, node)) break;

@@ -102,9 +102,6 @@ Result<bool> is_energised(Session& session, std::uint8_t node) {
 }
 
 Result<bool> is_any_axis_energised(Session& session, std::uint8_t node) {
-  constexpr std::uint16_t kDriveProfile = 0x0192;  // Low word of 1000h (CiA 402-2).
-  constexpr unsigned kMostAxes = 8;
-  constexpr unsigned kAxisStep = 0x800;
   const auto open = [](const Error& error) {
     return error.code == Errc::sdo_abort ? Result<bool>(false) : fail(error);
   };
@@ -112,10 +109,9 @@ Result<bool> is_any_axis_energised(Session& session, std::uint8_t node) {
   if (!first || *first || session.wary_of(node) != nullptr) return first;
   const auto type = session.upload(node, objects::kDeviceType);
   if (!type) return open(type.error());
-  if ((load_le(*type) & 0xFFFFU) != kDriveProfile) return false;
-  for (unsigned axis = 1; axis < kMostAxes; ++axis) {
-    const auto index = static_cast<std::uint16_t>(objects::kStatusword.index + axis * kAxisStep);
-    const auto word = session.upload(node, {index, 0});
+  if (!drive::is_drive_type(load_le(*type))) return false;
+  for (unsigned axis = 2; axis <= drive::kMostAxes; ++axis) {
+    const auto word = session.upload(node, drive::of_axis(objects::kStatusword, axis));
     if (!word) return open(word.error());
     if (drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word))))) return true;
   }

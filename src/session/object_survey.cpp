@@ -20,9 +20,6 @@ bool is_of_one_object(const Error& error) {
 
 }  // namespace
 
-ObjectSurvey::ObjectSurvey(Session& session, std::uint8_t node, OnAlarm on_alarm)
-    : session_(&session), node_(node), on_alarm_(on_alarm), heard_(session.watch().alarms(node)) {}
-
 Result<std::vector<Result<Bytes>>> ObjectSurvey::read(std::span<const ObjectAddress> objects) {
   std::vector<Result<Bytes>> out;
   while (out.size() < objects.size()) {
@@ -38,8 +35,7 @@ Result<bool> ObjectSurvey::is_enabled() { return is_any_axis_energised(*session_
 
 std::vector<Result<Bytes>> ObjectSurvey::ask(std::span<const ObjectAddress> objects) {
   std::vector<SdoRequest> requests;
-  for (const auto object : objects)
-    requests.push_back({.node = node_, .object = object, .despite_alarm = on_alarm_ == OnAlarm::go_on});
+  for (const auto object : objects) requests.push_back({.node = node_, .object = object});
   return session_->transfer(requests);
 }
 
@@ -48,7 +44,6 @@ std::vector<Result<Bytes>> ObjectSurvey::ask(std::span<const ObjectAddress> obje
 Result<void> ObjectSurvey::take(std::vector<Result<Bytes>>& answers, std::span<const ObjectAddress> objects,
                                 std::vector<Result<Bytes>>& out) {
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    ++requests_;
     auto& answer = answers[i];
     const bool is_silent = !answer && answer.error().code == Errc::timeout;
     if (is_silent) {
@@ -71,7 +66,7 @@ Result<void> ObjectSurvey::check_alive(const Error& silence) {
 
 Result<void> ObjectSurvey::check_alarms(ObjectAddress last) {
   const auto before = std::exchange(heard_, session_->watch().alarms(node_));
-  if (heard_ == before || on_alarm_ == OnAlarm::go_on) return {};
+  if (heard_ == before) return {};
   const auto& known = session_->watch().emergencies(node_);
   const auto what = known.empty() ? std::string("an EMCY") : formatted("the EMCY {:04X}h", known.back().code);
   return fail(drive_error(

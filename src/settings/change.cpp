@@ -281,21 +281,6 @@ void read_in_force(show::Desk& desk, std::span<const Change> changes) {
   if (!requests.empty()) (void)desk.session->transfer(requests);
 }
 
-/// Writes all but what is unchanged, which counts as written and read back.
-std::vector<Result<session::Written>> write_open(show::Desk& desk, std::span<const Change> changes,
-                                                 std::span<const session::SdoRequest> requests,
-                                                 bool read_back) {
-  std::vector<session::SdoRequest> open;
-  for (std::size_t i = 0; i < changes.size(); ++i)
-    if (!changes[i].unchanged) open.push_back(requests[i]);
-  auto done = session::write_all(*desk.session, open, read_back);
-  std::vector<Result<session::Written>> out;
-  std::size_t next = 0;
-  for (const auto& change : changes)
-    out.push_back(change.unchanged ? session::Written{false, change.before} : std::move(done[next++]));
-  return out;
-}
-
 }  // namespace
 
 Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, const WriteOptions& options) {

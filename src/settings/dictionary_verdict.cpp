@@ -110,9 +110,9 @@ report::TestResult dictionary_test(std::uint8_t node, const Error& error) {
 report::Record dictionary_record(show::Desk& desk, const std::string& file, const DictionaryCheck& check) {
   const auto differences = check.findings.size();
   if (differences > 0)
-    desk.errors.push_back(
-        drive_error(Errc::negative, check.node,
-                    formatted("differences between {} and the drive: {}", file, differences)));
+    desk.errors.push_back(drive_error(
+        Errc::negative, check.node, formatted("differences between {} and the drive: {}", file, differences),
+        "the file is of another drive or firmware, or wrong in these entries: correct it before you use it with -d"));
   return {{"node", check.node},
           {"file", file},
           {"entries", check.entries, Show::everywhere, "entries of the file"},

@@ -81,6 +81,20 @@ void mark_unchanged(show::Desk& desk, std::vector<Change>& changes, const WriteO
   }
 }
 
+std::vector<Result<session::Written>> write_open(show::Desk& desk, std::span<const Change> changes,
+                                                 std::span<const session::SdoRequest> requests,
+                                                 bool read_back) {
+  std::vector<session::SdoRequest> open;
+  for (std::size_t i = 0; i < changes.size(); ++i)
+    if (!changes[i].unchanged) open.push_back(requests[i]);
+  auto done = session::write_all(*desk.session, open, read_back);
+  std::vector<Result<session::Written>> out;
+  std::size_t next = 0;
+  for (const auto& change : changes)
+    out.push_back(change.unchanged ? session::Written{false, change.before} : std::move(done[next++]));
+  return out;
+}
+
 void write_altered(show::Desk& desk, std::vector<Change>& changes,
                    std::vector<Result<session::Written>>& written) {
   std::vector<std::size_t> asked;

@@ -1,5 +1,6 @@
 #include "show/standard_names.hpp"
 
+#include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::show {
@@ -8,8 +9,6 @@ namespace {
 constexpr std::uint16_t kCommunicationFirst = 0x1000;
 constexpr std::uint16_t kCommunicationLast = 0x1FFF;
 constexpr std::uint16_t kProfileFirst = 0x6000;
-/// Low word of 1000h (CiA 402-2, device type).
-constexpr std::uint64_t kDriveProfileNumber = 0x0192;
 
 }  // namespace
 
@@ -38,7 +37,7 @@ bool StandardNames::is_drive(std::uint8_t node) {
   if (!type && session.modbus() == nullptr)
     if (const auto read = session.upload(node, objects::kDeviceType); read)
       type = static_cast<std::uint32_t>(load_le(*read));
-  const bool out = type && (*type & 0xFFFFU) == kDriveProfileNumber;
+  const bool out = type && drive::is_drive_type(*type);
   drives_.emplace(node, out);
   return out;
 }

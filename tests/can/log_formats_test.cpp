@@ -27,7 +27,7 @@ Frames bare_frames(std::string_view text) {
   return out;
 }
 
-/// Without what is told beside them.
+/// Without the notices beside them.
 Frames frames_alone(std::string_view text) {
   auto out = bare_frames(text);
   std::erase_if(out, [](const std::string& line) { return line.find('#') == std::string::npos; });

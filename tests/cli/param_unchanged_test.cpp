@@ -67,7 +67,7 @@ TEST_F(ParamUnchangedTest, WhatIsMoreThanAValueIsAlwaysWritten) {
   use("sim:ts@1", "ts");
   EXPECT_EQ(sent("param set Fn_38=0", "601#2B3820"), 1U) << "disables";
   EXPECT_EQ(sent("param set Fn_30=0", "601#2B3020"), 1U) << "the manual does not say what it does";
-  EXPECT_EQ(sent("param set Fn_00=2", "601#2B0020", 5), 1U) << "behind the password";
+  EXPECT_EQ(sent("param set Fn_00=2", "601#2B0020", 5), 1U) << "protected by the password";
 }
 
 TEST_F(ParamUnchangedTest, ADryRunSaysSo) {

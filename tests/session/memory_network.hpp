@@ -39,8 +39,10 @@ class MemoryNetwork final : public Network, private NodeRecords {
       ++told_[node].heartbeats;
       told_[node].state = change->state;
     }
-    if (const auto* emergency = std::get_if<canopen::Emergency>(&what))
+    if (const auto* emergency = std::get_if<canopen::Emergency>(&what)) {
       told_[node].emergencies.push_back(*emergency);
+      if (!emergency->is_reset()) ++told_[node].alarms;
+    }
     events_.push_back({now_, node, std::move(what)});
   }
   /// While it is set, nothing goes through.
@@ -110,6 +112,7 @@ class MemoryNetwork final : public Network, private NodeRecords {
     std::uint32_t boots = 0;
     std::uint32_t heartbeats = 0;
     std::deque<canopen::Emergency> emergencies;
+    std::uint32_t alarms = 0;
   };
 
   static Error gone() { return fail(Errc::bus, "memory: the network is lost", "wait for it").value(); }
@@ -130,7 +133,7 @@ class MemoryNetwork final : public Network, private NodeRecords {
   const std::deque<canopen::Emergency>& emergencies(std::uint8_t node) const override {
     return told(node).emergencies;
   }
-  std::uint32_t alarms(std::uint8_t) const override { return 0; }
+  std::uint32_t alarms(std::uint8_t node) const override { return told(node).alarms; }
 
   TimePoint now_{std::chrono::seconds(1)};
   std::map<std::uint8_t, MemoryNode> nodes_;
