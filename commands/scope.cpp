@@ -167,17 +167,22 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
 }
 
 /// What the dictionary says is refused before anything is sent.
-Result<void> check_names(const Context& context, std::span<const std::string> names) {
-  for (const auto& name : names) {
+Result<void> check_names(const Context& context, const Arguments& arguments) {
+  bool any_plotted = false;
+  for (const auto& name : arguments.all("object")) {
     const auto target = drive::resolve(context.profile, name, drive::Match::part);
     if (!target) return fail(target.error());
-    if (const auto number = traffic::check_number({context.nodes.front(), *target, name}); !number)
-      return number;
+    const traffic::Channel channel{context.nodes.front(), *target, name};
+    if (const auto number = traffic::check_number(channel); !number) return number;
+    any_plotted = any_plotted || !channel.is_word();
   }
-  return {};
+  if (any_plotted || !arguments.has("--svg")) return {};
+  return fail(Errc::usage, "--svg: bit fields are not plotted, and no other object is named",
+              "--csv writes their values; the result shows them in words");
 }
 
-Result<void> write_files(const Arguments& arguments, std::span<const Series> series) {
+Result<void> write_files(const Arguments& arguments, std::span<const Series> series,
+                         std::span<const Series> plotted) {
   if (series.empty()) return {};
   if (arguments.has("--csv"))
     if (const auto done =
@@ -185,15 +190,14 @@ Result<void> write_files(const Arguments& arguments, std::span<const Series> ser
         !done)
       return done;
   if (arguments.has("--svg"))
-    return write_file_atomically(std::string(arguments.text("--svg")), report::svg_plot(series));
+    return write_file_atomically(std::string(arguments.text("--svg")), report::svg_plot(plotted));
   return {};
 }
 
 Result<Value> run_scope(Context& context, const Arguments& arguments) {
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
-  if (const auto numbers = check_names(context, arguments.all("object")); !numbers)
-    return fail(numbers.error());
+  if (const auto numbers = check_names(context, arguments); !numbers) return fail(numbers.error());
   const auto mapping = map_objects(context, arguments);
   if (!mapping) return fail(mapping.error());
   auto sampler = traffic::Sampler::make(context, arguments.all("object"));
@@ -203,19 +207,22 @@ Result<Value> run_scope(Context& context, const Arguments& arguments) {
   for (const auto& each : *mapping) each->end();
   const auto series = traffic::series_of(scope.records());
   // What was sampled before something broke is worth keeping.
-  const auto written = write_files(arguments, series);
+  const auto plotted = traffic::plotted_series(scope.records());
+  const auto written = write_files(arguments, series, plotted);
   if (!recorded) return fail(recorded.error());
   if (!written) return fail(written.error());
   for (auto& error : traffic::failures_of(scope.last())) context.errors.push_back(std::move(error));
   report::Record out{{"seconds", std::round(scope.seconds() * 1000) / 1000},
                      {"objects", traffic::sampling_table(scope.records())}};
+  traffic::add_words(out, context, scope.records());
   for (const auto* option : {"--csv", "--svg"}) {
     const bool is_written = arguments.has(option) && !series.empty();
     out.push_back({option + 2, is_written ? Value(arguments.text(option)) : Value(),
                    is_written ? report::Show::everywhere : report::Show::json});
   }
-  out.push_back({"plot", report::Plot{series},
-                 arguments.has("--plot") ? report::Show::everywhere : report::Show::json});
+  out.push_back({"plot", report::Plot{series}, report::Show::json});
+  if (arguments.has("--plot") && !plotted.empty())
+    out.push_back({"plot_text", report::Plot{plotted}, report::Show::text, "plot"});
   return Value(std::move(out));
 }
 
@@ -238,7 +245,8 @@ const Command kScope{
         "sampling rate, and restores it at the end; without --map nothing in the drive is changed. Each "
         "value has the arrival time of its own frame. The samples go to a file (--csv, with empty cells "
         "where there is no value at that time; --svg) or are plotted (--plot); with --json they are in the "
-        "result. A drive that no longer answers at the end sets the exit code.",
+        "result. A drive that no longer answers at the end sets the exit code."
+        " Bit fields such as statusword and digital inputs are shown in words: each value they had is listed at the end, and none is plotted.",
     .parameters = kScopeParameters,
     .examples = kScopeExamples,
     .needs = Needs::node,

@@ -72,7 +72,8 @@ class WatchingValues {
     if (!lost)
       for (auto& error : traffic::failures_of(before_)) context_->errors.push_back(std::move(error));
     report::Record out{{"objects", traffic::sampling_table(records_)}};
-    if (plot) out.push_back({"plot", report::Plot{traffic::series_of(records_)}, report::Show::text});
+    traffic::add_words(out, *context_, records_);
+    if (plot) out.push_back({"plot", report::Plot{traffic::plotted_series(records_)}, report::Show::text});
     out.push_back(
         {"samples", context_->keeps_samples ? Value(writer_.take_kept()) : Value(), report::Show::json});
     return out;
@@ -96,7 +97,7 @@ class WatchingValues {
       const auto value = decoded(channel, sample);
       const auto label = show::brief_label(value, context_->chinese);
       view_->set(row, {node, channel.name, label.empty() ? value.text : value.text + " " + label},
-                 value.word ? std::nullopt : show::plotted(value.value));
+                 channel.is_word() ? std::nullopt : show::plotted(value.value));
     }
   }
 
@@ -133,11 +134,11 @@ class WatchingValues {
   }
 
   /// Of a sample that has bytes.
-  static show::DecodedValue decoded(const traffic::Channel& channel, const traffic::Sample& sample) {
-    return show::decode_value({channel.node, channel.target, {}, Bytes{}, channel.bridge}, *sample.bytes);
+  show::DecodedValue decoded(const traffic::Channel& channel, const traffic::Sample& sample) const {
+    return traffic::decoded(*context_, channel, *sample.bytes);
   }
 
-  static report::Record record_of(const traffic::Channel& channel, const traffic::Sample& sample) {
+  report::Record record_of(const traffic::Channel& channel, const traffic::Sample& sample) const {
     const auto& address = channel.target.address;
     report::Record out{{"index", address.index},
                        {"sub", address.sub},
@@ -221,7 +222,8 @@ const Command kWatch{
         "or Ctrl-C. Values in a TPDO are taken from "
         "it; the rest is read by SDO. A bus that is lost is waited for until the end. Then it shows the number of values of each object, the minimum, "
         "mean and maximum; --plot plots them. `-o jsonl` gives one document per sample. A drive that no "
-        "longer answers at the end sets the exit code.",
+        "longer answers at the end sets the exit code."
+        " Bit fields such as statusword and digital inputs are shown in words: each value they had is listed at the end, and none is plotted.",
     .parameters = kWatchParameters,
     .examples = kWatchExamples,
     .needs = Needs::node,

@@ -1,6 +1,7 @@
 #include "drive/quantity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/format.hpp"
@@ -9,6 +10,7 @@
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/unit.hpp"
+#include "drive/word_bits.hpp"
 #include "od/real_number.hpp"
 
 namespace servoctl::drive {
@@ -136,11 +138,14 @@ bool is_of_fields(ObjectAddress object) {
   return is_pdo_mapping(object.index) && object.sub != 0;
 }
 
-/// 60FEh has levels, and which of them are set at all.
+/// Of any axis. 60FEh has levels, and which of them are set at all.
 bool is_of_bits(ObjectAddress object) {
-  return is_of_fields(object) || object == objects::kControlword || object == objects::kStatusword ||
-         object == objects::kDigitalInputs ||
-         (object.index == objects::kDigitalOutputsIndex && object.sub != 0);
+  const auto first = of_first_axis(object);
+  constexpr std::array kBitObjects{objects::kErrorRegister, objects::kControlword, objects::kStatusword,
+                                   objects::kDigitalInputs, objects::kSupportedModes};
+  return is_of_fields(object) ||
+         std::find(kBitObjects.begin(), kBitObjects.end(), first) != kBitObjects.end() ||
+         (first.index == objects::kDigitalOutputsIndex && first.sub != 0);
 }
 
 }  // namespace

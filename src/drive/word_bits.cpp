@@ -1,5 +1,8 @@
 #include "drive/word_bits.hpp"
 
+#include <algorithm>
+#include <array>
+
 #include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/cia402.hpp"
@@ -59,6 +62,22 @@ std::string in_brackets(const std::string& head, const std::string& rest, Chines
 }
 
 }  // namespace
+
+ObjectAddress of_first_axis(ObjectAddress object) {
+  constexpr std::uint16_t kFirst = 0x6000;
+  constexpr std::uint16_t kLast = 0x9FFF;
+  constexpr std::uint16_t kStep = 0x0800;
+  if (object.index < kFirst || object.index > kLast) return object;
+  return {static_cast<std::uint16_t>(kFirst + (object.index - kFirst) % kStep), object.sub};
+}
+
+std::string switch_words(const MotionRules& rules, std::uint32_t inputs, Chinese chinese) {
+  constexpr std::array<std::string_view, 3> kSwitches{"negative limit", "positive limit", "home switch"};
+  std::string out;
+  for (std::size_t i = 0; i < std::min(kSwitches.size(), rules.inputs.size()); ++i)
+    if (rules.is_actuated(inputs, rules.inputs[i])) add_bit(out, in_language(kSwitches[i], chinese), chinese);
+  return out.empty() ? in_language("no limit, no home switch", chinese) : out;
+}
 
 std::string statusword_words(std::uint16_t statusword, std::int8_t mode, Chinese chinese) {
   std::string bits;

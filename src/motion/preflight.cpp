@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "drive/provenance.hpp"
 #include "drive/standard_objects.hpp"
+#include "drive/word_bits.hpp"
 #include "motion/operation_mode.hpp"
 #include "motion/other_axes.hpp"
 #include "motion/power.hpp"
@@ -167,16 +168,10 @@ class Preflight {
 
   /// Limits are shown and do not stop: which motion they are in the way of is not known.
   void add_inputs(std::uint32_t word) {
-    constexpr std::array<std::string_view, 3> kNames{"negative limit", "positive limit", "home switch"};
     const auto& rules = units_->profile().rules;
-    std::string text;
-    bool limit = false;
-    for (std::size_t i = 0; i < kNames.size(); ++i) {
-      if (!rules.motion.is_actuated(word, rules.motion.inputs[i])) continue;
-      append(text, std::string(kNames[i]));
-      limit = limit || i < 2;
-    }
-    if (text.empty()) text = "no limit, no home switch";
+    auto text = drive::switch_words(rules.motion, word);
+    const bool limit = rules.motion.is_actuated(word, rules.motion.inputs[0]) ||
+                       rules.motion.is_actuated(word, rules.motion.inputs[1]);
     if (rules.is_assumed("motion.inputs_active_low"))
       text += " (assumed: the manual does not state the active level)";
     add(limit ? Weight::caution : Weight::good, "inputs", formatted("60FDh is 0x{:08X}: {}", word, text));

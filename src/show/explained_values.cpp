@@ -54,8 +54,8 @@ struct Both {
   std::string chinese;
 };
 
-Both words_in_both(ObjectAddress object, std::uint64_t value) {
-  return {value_words(object, value, false), value_words(object, value, true)};
+Both words_in_both(ObjectAddress object, std::uint64_t value, const drive::Profile& family) {
+  return {value_words(object, value, false, &family), value_words(object, value, true, &family)};
 }
 
 /// The class of an error code that no list has: 7580h is of 7500h (CiA 402-1, error codes).
@@ -90,7 +90,8 @@ Both words_of_code(const drive::Profile& profile, std::uint16_t code) {
 Both meaning_of(const drive::Profile& profile, const drive::Target& target, const Bytes& bytes) {
   if (target.address == objects::kErrorCode)
     return words_of_code(profile, static_cast<std::uint16_t>(load_le(bytes)));
-  if (auto words = words_in_both(target.address, load_le(bytes)); !words.english.empty()) return words;
+  if (auto words = words_in_both(target.address, load_le(bytes), profile); !words.english.empty())
+    return words;
   const auto decoded = decode_value(Reading{1, target, std::nullopt, bytes}, bytes);
   const auto* label = std::get_if<std::string>(&decoded.label.data());
   const auto* label_zh = std::get_if<std::string>(&decoded.label_zh.data());
@@ -196,8 +197,8 @@ void add_number(const TopicQuery& query, const drive::Profile& profile, std::vec
   topic.line = "CiA 402-2, 8.4";
   if (auto code = words_of_code(profile, word); !code.english.empty())
     add_row(topic, "0x603F", std::move(code));
-  add_row(topic, "0x6041", words_in_both(objects::kStatusword, word));
-  add_row(topic, "0x6040", words_in_both(objects::kControlword, word));
+  add_row(topic, "0x6041", words_in_both(objects::kStatusword, word, profile));
+  add_row(topic, "0x6040", words_in_both(objects::kControlword, word, profile));
   if (!hex) std::rotate(topic.rows.begin(), topic.rows.end() - 2, topic.rows.end());
   out.push_back({std::move(topic), Found::value});
 }

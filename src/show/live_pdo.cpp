@@ -23,7 +23,7 @@ void show_values(LiveView& live, const PdoView& view, ByteSpan data, bool chines
     text.clear();
     append_value(field, value, chinese, text);
     live.set(formatted("{} {}", row, field.first_bit), {node, view.name, field.name, text},
-             plotted(od_value(value)));
+             field.meaning.bits ? std::nullopt : plotted(od_value(value)));
   }
 }
 

@@ -8,10 +8,10 @@
 #include "canopen/cob_id.hpp"
 #include "drive/standard_mode.hpp"
 #include "drive/standard_objects.hpp"
-#include "drive/word_bits.hpp"
 #include "report/told.hpp"
 #include "show/reading.hpp"
 #include "show/records.hpp"
+#include "show/value_words.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -40,7 +40,11 @@ od::DataType unsigned_type(std::size_t bytes) {
 
 PdoField make_field(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::PdoEntry entry,
                     std::size_t first_bit) {
-  PdoField out{entry, first_bit, drive::target_at(profile, entry.object), {}, {}, {}, {}};
+  PdoField out;
+  out.entry = entry;
+  out.first_bit = first_bit;
+  out.target = drive::target_at(profile, entry.object);
+  out.family = profile;
   const std::size_t bytes = (entry.bits + 7U) / 8U;
   out.meaning = drive::as_answered(drive::meaning(out.target, node), bytes);
   out.type = out.meaning.type_known && od::size_of(out.meaning.type) == bytes ? out.meaning.type
@@ -62,7 +66,18 @@ std::uint32_t predefined_cob_id(const canopen::Pdo& pdo, std::uint8_t node) {
   return canopen::kPdoInvalid | ((receive ? 0x100U : 0x080U) + 0x100U * pdo.number + node);
 }
 
-void write_value(const PdoField& field, const od::Value& value, report::JsonWriter& json) {
+/// What the bits of the object mean; empty where they have no meaning of their own. Of the first axis
+/// controlword and statusword are those of every drive.
+std::string words_of_field(const PdoField& field, const od::Value& value, bool chinese, std::int8_t mode) {
+  const auto* number = std::get_if<std::uint64_t>(&value);
+  const auto& object = field.entry.object;
+  const bool known =
+      field.target.entry != nullptr || object == objects::kStatusword || object == objects::kControlword;
+  if (number == nullptr || !known) return {};
+  return value_words(object, *number, chinese, field.family, mode);
+}
+
+void write_value(const PdoField& field, const od::Value& value, std::int8_t mode, report::JsonWriter& json) {
   const auto& meaning = field.meaning;
   const auto raw = od_value(value);
   const bool as_sent = meaning.scale == 1 && meaning.encoding == od::Encoding::plain;
@@ -72,7 +87,7 @@ void write_value(const PdoField& field, const od::Value& value, report::JsonWrit
   json.member("value", as_sent ? raw : Value(drive::scaled(meaning, value)));
   json.member("raw", raw);
   json.text_or_null("unit", meaning.unit);
-  json.text_or_null("label", label != nullptr ? std::string_view(label->label) : std::string_view());
+  json.text_or_null("label", label != nullptr ? label->label : words_of_field(field, value, false, mode));
   json.end_record();
 }
 
@@ -114,13 +129,10 @@ void append_value(const PdoField& field, const od::Value& value, bool chinese, s
                   std::int8_t mode) {
   const auto& meaning = field.meaning;
   const auto* number = std::get_if<std::uint64_t>(&value);
-  const auto& object = field.entry.object;
-  if (number != nullptr && (object == objects::kStatusword || object == objects::kControlword)) {
-    fmt::format_to(std::back_inserter(out), "0x{:04X} ", *number);
-    const auto word = static_cast<std::uint16_t>(*number);
-    const auto language = chinese ? report::chinese_word : nullptr;
-    out += object == objects::kControlword ? drive::controlword_words(word, mode, language)
-                                           : drive::statusword_words(word, mode, language);
+  if (const auto words = words_of_field(field, value, chinese, mode); !words.empty()) {
+    const auto digits = drive::hex_digits(meaning, *number);
+    fmt::format_to(std::back_inserter(out), "0x{:0{}X} ", *number, digits);
+    out += words;
     return;
   }
   const bool plain = meaning.encoding == od::Encoding::plain;
@@ -171,9 +183,10 @@ void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string
 }
 
 void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json) {
+  const auto mode = mode_in(view, data);
   json.begin_list();
   if (fits_frame(view, data))
-    for (const auto& field : view.fields) write_value(field, field.value(data), json);
+    for (const auto& field : view.fields) write_value(field, field.value(data), mode, json);
   json.end_list();
 }
 

@@ -22,9 +22,10 @@ struct PdoField {
   std::size_t first_bit = 0;
   drive::Target target;
   drive::Meaning meaning;
-  od::DataType type = od::DataType::u32;  ///< As long as the entry.
-  std::string name;                       ///< What a person reads: `Statusword`, `0x6041:0`.
-  std::string head;                       ///< `"index":24641,"sub":0,"name":"Statusword"` of its records.
+  od::DataType type = od::DataType::u32;   ///< As long as the entry.
+  std::string name;                        ///< What a person reads: `Statusword`, `0x6041:0`.
+  const drive::Profile* family = nullptr;  ///< May be null.
+  std::string head;                        ///< `"index":24641,"sub":0,"name":"Statusword"` of its records.
 
   /// The value in a frame that is long enough.
   od::Value value(ByteSpan data) const;
@@ -47,7 +48,7 @@ struct PdoView {
 PdoView make_view(const drive::Profile* profile, bool chinese, std::uint8_t node, canopen::Pdo pdo);
 
 /// Appends the value as a person reads it: `1200 inc`, `3 Profile velocity`, `0x0237 operation enabled` for
-/// the statusword, `0x000F enable operation` for the controlword. `mode`: of CiA 402-2, for their bits.
+/// the statusword, `0x000F enable operation` for the controlword; see value_words(). `mode`: of CiA 402-2.
 void append_value(const PdoField& field, const od::Value& value, bool chinese, std::string& out,
                   std::int8_t mode = 0);
 

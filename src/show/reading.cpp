@@ -198,8 +198,8 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
     out.label_zh = report::text_or_null(label->label_zh);
   } else if (const auto* word = std::get_if<std::uint64_t>(&*value);
              word != nullptr && reading.target.entry != nullptr) {
-    out.label = report::text_or_null(value_words(reading.target.address, *word, false));
-    if (!out.label.is_null()) out.word = WordOfObject{reading.target.address, *word};
+    out.label = report::text_or_null(value_words(reading.target.address, *word, false, reading.family));
+    if (!out.label.is_null()) out.word = WordOfObject{reading.target.address, *word, reading.family};
   }
   return out;
 }
@@ -210,14 +210,16 @@ void leave_units_open(Reading& reading) {
 }
 
 std::string label_text(const DecodedValue& value, bool chinese) {
-  if (chinese && value.word) return value_words(value.word->object, value.word->value, true);
+  if (chinese && value.word)
+    return value_words(value.word->object, value.word->value, true, value.word->family);
   const auto& label = chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
   const auto* text = std::get_if<std::string>(&label.data());
   return text == nullptr ? std::string() : *text;
 }
 
 std::string brief_label(const DecodedValue& value, bool chinese) {
-  return value.word ? value_head(value.word->object, value.word->value, chinese) : label_text(value, chinese);
+  if (!value.word) return label_text(value, chinese);
+  return value_head(value.word->object, value.word->value, chinese, value.word->family);
 }
 
 FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& value) {
@@ -230,6 +232,7 @@ FamiliarValue familiar_value(const drive::Meaning& meaning, const od::Value& val
 Table reading_table(Desk& desk, std::vector<Reading> readings) {
   if (desk.profile != nullptr) add_bridges(*desk.session, *desk.profile, readings);
   const auto units = own_units(desk, readings);
+  for (auto& reading : readings) reading.family = desk.profile != nullptr ? desk.profile : desk.standard;
   for (auto& reading : readings)
     if (const auto own = units.find(reading.node); own != units.end()) reading.units = &own->second;
   Table table;

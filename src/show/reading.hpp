@@ -21,6 +21,7 @@ struct Reading {
   Result<Bytes> bytes = Bytes{};
   std::optional<drive::Bridge> bridge = {};    ///< What the drive's own measures say of the unit.
   const session::DriveUnits* units = nullptr;  ///< The drive's own, in the place of those its data assume.
+  const drive::Profile* family = nullptr;      ///< Whose digital inputs are told in words.
   bool one_of_many = false;  ///< Of a record or a pattern: that the drive refuses it is an answer.
 };
 
@@ -28,6 +29,7 @@ struct Reading {
 struct WordOfObject {
   ObjectAddress object;
   std::uint64_t value = 0;
+  const drive::Profile* family = nullptr;
 };
 
 /// The value of an object, taken apart for a reader and for JSON.

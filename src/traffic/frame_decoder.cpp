@@ -281,21 +281,21 @@ void FrameDecoder::end_sdo_fields(const canopen::SdoStep& step) {
 
 void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Target& target) {
   if (!step.object || !step.data) return leave_out({"value", "unit", "label", "bytes"});
+  const auto* family = family_of(*out_.node);
   show::Reading reading{*out_.node, target, {}, Bytes{}};
+  reading.family = family != nullptr ? family : options_.standard;
   // Some servers answer with four bytes for whatever is smaller, as canopen::SdoHabit says.
   auto data = *step.data;
   const auto size = show::size_of(reading);
   if (size != 0 && size < 4 && data.size() == 4 && load_le(data) >> (size * 8 - 1) == 0) data.resize(size);
-  const auto* family = family_of(*out_.node);
   if ((family == nullptr || family->is_generic()) && target.entry != nullptr) show::leave_units_open(reading);
   const auto value = show::decode_value(reading, data);
   out_.text += " = " + value.text;
-  const auto& label = options_.chinese && !value.label_zh.is_null() ? value.label_zh : value.label;
   // The mode that was heard tells more than the value alone.
   if (const auto words = words_of(data, target.address); !words.empty())
     out_.text += " " + words;
-  else if (const auto* said = std::get_if<std::string>(&label.data()))
-    out_.text += " " + *said;
+  else if (const auto label = show::label_text(value, options_.chinese); !label.empty())
+    out_.text += " " + label;
   if (!options_.fields) return;
   fields_.member("value", value.value);
   fields_.text_or_null("unit", value.unit);

@@ -1,6 +1,7 @@
 #include "traffic/sampler.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
@@ -77,6 +78,8 @@ Error no_number(const Channel& channel, const std::string& why) {
                  "`read` and `watch` show it"),
       channel.node, channel.target.address);
 }
+
+double milliseconds(double seconds) { return std::round(seconds * 1000) / 1000; }
 
 Value rounded(double number) { return parse_real(formatted("{:.9g}", number)).value_or(number); }
 
@@ -210,6 +213,21 @@ void ChannelRecord::add(double seconds, const Sample& sample) {
   series_.seconds.push_back(seconds);
   series_.values.push_back(number->value);
   statistics_.add(number->value);
+  if (is_word_) add_word(seconds, load_le(*sample.bytes), *sample.bytes);
+}
+
+void ChannelRecord::add_word(double seconds, std::uint64_t value, const Bytes& bytes) {
+  constexpr std::size_t kMost = 32;
+  const auto known =
+      std::find_if(words_.begin(), words_.end(), [&](const Word& w) { return w.value == value; });
+  if (known == words_.end() && words_.size() == kMost) {
+    ++other_words_;
+  } else if (known == words_.end()) {
+    words_.push_back({value, bytes, 1, seconds, seconds});
+  } else {
+    ++known->samples;
+    known->last = seconds;
+  }
 }
 
 report::Table sampling_table(std::span<const ChannelRecord> records) {
@@ -245,10 +263,55 @@ report::Table sampling_table(std::span<const ChannelRecord> records) {
   return table;
 }
 
+show::DecodedValue decoded(const show::Desk& desk, const Channel& channel, ByteSpan bytes) {
+  show::Reading reading{channel.node, channel.target, {}, Bytes{}, channel.bridge};
+  if (channel.units) reading.units = &*channel.units;
+  reading.family = desk.profile != nullptr ? desk.profile : desk.standard;
+  return show::decode_value(reading, bytes);
+}
+
+void add_words(report::Record& out, const show::Desk& desk, std::span<const ChannelRecord> records) {
+  report::Table table;
+  table.columns = {{"node"},
+                   {"index", "", report::Show::json},
+                   {"sub", "", report::Show::json},
+                   {"name"},
+                   {"value"},
+                   {"samples"},
+                   {"first", "first (s)"},
+                   {"last", "last (s)"},
+                   {"meaning", "label", report::Show::text},
+                   {"label", "", report::Show::json}};
+  for (const auto& record : records) {
+    const auto& channel = record.channel();
+    const auto& object = channel.target.address;
+    for (const auto& word : record.words()) {
+      const auto value = decoded(desk, channel, word.bytes);
+      const auto digits = drive::hex_digits(drive::meaning(channel.target, channel.node), word.value);
+      table.rows.push_back({channel.node, object.index, object.sub, channel.name,
+                            report::Hex{word.value, static_cast<int>(digits)}, word.samples,
+                            milliseconds(word.first), milliseconds(word.last),
+                            report::text_or_null(show::label_text(value, desk.chinese)), value.label});
+    }
+    if (record.other_words() > 0)
+      table.rows.push_back({channel.node, object.index, object.sub, channel.name, Value(),
+                            record.other_words(), Value(), Value(), "other values", Value()});
+  }
+  const auto show = table.rows.empty() ? report::Show::json : report::Show::everywhere;
+  out.push_back({"words", std::move(table), show, "values of bit fields"});
+}
+
 std::vector<Series> series_of(std::span<const ChannelRecord> records) {
   std::vector<Series> out;
   for (const auto& record : records)
     if (!record.series().values.empty()) out.push_back(record.series());
+  return out;
+}
+
+std::vector<Series> plotted_series(std::span<const ChannelRecord> records) {
+  std::vector<Series> out;
+  for (const auto& record : records)
+    if (!record.series().values.empty() && !record.channel().is_word()) out.push_back(record.series());
   return out;
 }
 

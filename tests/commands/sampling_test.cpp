@@ -129,6 +129,41 @@ TEST_F(Sampling, WhatCouldNotBePutBackIsAnError) {
   EXPECT_TRUE(told);
 }
 
+/// The rows of a table of the result; empty where it is not shown to people.
+std::vector<std::string> shown_labels(const report::Record& result) {
+  std::vector<std::string> out;
+  for (const auto& field : result)
+    if (const auto* table = field.value.table(); table != nullptr && field.key == "words")
+      for (const auto& row : table->rows) out.push_back(*std::get_if<std::string>(&row.back().data()));
+  return out;
+}
+
+TEST_F(Sampling, BitFieldsAreToldInWordsAndNotPlotted) {
+  build("gsd600@1", "gsd600");
+  start_node();
+  const std::vector<std::string> expected{"switch on disabled (voltage enabled, remote)",
+                                          "no limit, no home switch"};
+  for (const auto* command : {"scope", "watch"}) {
+    const auto result = run(command, {{"object", "0x6041"},
+                                      {"object", "0x60FD"},
+                                      {"object", "0x606C"},
+                                      {"--for", "50ms"},
+                                      {"--plot", "true"}});
+    ASSERT_TRUE(result) << command;
+    const auto& record = *std::get_if<report::Record>(&result->data());
+    EXPECT_EQ(shown_labels(record), expected) << command;
+    for (const auto& field : record) {
+      const auto* plot = field.value.plot();
+      if (plot == nullptr || field.show == report::Show::json) continue;
+      ASSERT_EQ(plot->series.size(), 1U) << command;
+      EXPECT_EQ(plot->series.front().name, "Velocity actual value") << command;
+    }
+  }
+  const auto refused = run("scope", {{"object", "0x6041"}, {"--svg", own_file("words.svg")}});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::usage);
+}
+
 TEST_F(Sampling, EachValueHasTheTimeOfItsOwnFrame) {
   build("gsd600@1,gsd600@2", "gsd600");
   context.nodes = {1, 2};
