@@ -168,28 +168,32 @@ Result<void> LastPlaceFile::write(const LastPlace& place) const {
   return write_own_file(path_, report::to_json(document) + "\n");
 }
 
-void take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
+bool take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   const RegularFilesOnly regular;
   const auto& now = shell.defaults();
   const bool told = !now.bus.empty() || !now.nodes.empty() || !now.drive.empty();
-  if (told || state_folder.empty()) return;
+  if (told || state_folder.empty()) return false;
   const auto last = LastPlaceFile(state_folder).read(folder_now());
   if (!last) {
     auto text = last.error().message;
     if (!last.error().hint.empty()) append(text, last.error().hint, "; ");
-    return tell(shell, text);
+    tell(shell, text);
+    return true;
   }
-  if (!*last || ((*last)->bus.empty() && (*last)->nodes.empty())) return;
+  if (!*last || ((*last)->bus.empty() && (*last)->nodes.empty())) return false;
   const auto& place = **last;
   // Who names a cabinet file wants to be there.
-  if (!now.cabinet.empty() && place.cabinet.empty()) return;
+  if (!now.cabinet.empty() && place.cabinet.empty()) return false;
   const auto words = in_words(place, shell.console().chinese());
-  if (const auto there = go_to(shell, place); !there)
-    return tell(shell, formatted("not as last time ({}): {}; `bus` and `use` say where to go", words,
-                                 there.error().message));
+  if (const auto there = go_to(shell, place); !there) {
+    tell(shell, formatted("not as last time ({}): {}; `bus` and `use` say where to go", words,
+                          there.error().message));
+    return true;
+  }
   const bool waits = place.bus.empty() || !opens_silently(shell, place.bus);
   tell(shell, formatted("as last time ({}): {}; `bus`, `use` and `drive` change it{}", place.time, words,
                         waits ? "; the first line that needs the bus opens it" : ""));
+  return true;
 }
 
 void keep_last_place(Shell& shell, const std::filesystem::path& state_folder) {

@@ -39,8 +39,8 @@ class LastPlaceFile {
 /// For a prompt that was told neither bus nor node nor family: those of last time in this folder, and says
 /// so. A bus whose opening sends nothing is opened; another one is left to the first line that needs it. One
 /// that is not there any more is told, and so is a place that is not of the cabinet file in use, which is
-/// stronger than what was remembered; nothing is taken then.
-void take_last_place(Shell& shell, const std::filesystem::path& state_folder);
+/// stronger than what was remembered; nothing is taken then. True when it said anything.
+bool take_last_place(Shell& shell, const std::filesystem::path& state_folder);
 
 /// Keeps where the prompt is now, once it is somewhere that can be found again.
 void keep_last_place(Shell& shell, const std::filesystem::path& state_folder);

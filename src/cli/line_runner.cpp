@@ -83,11 +83,12 @@ int log_line(Shell& shell, const std::vector<std::string>& words) {
 
 int LineRunner::run(std::string_view line) {
   shell_->console().log_typed(line);
-  const auto words = split_words(line);
+  auto words = split_words(line);
   const auto chinese = shell_->defaults().chinese;
   shell_->console().set_chinese(words ? wants_chinese(*words, chinese) : chinese);
   if (!words) return shell_->report_error(words.error(), shell_->defaults().json);
   if (words->empty()) return 0;
+  *words = as_parameter_line(std::move(*words));
   exit_ = is_exit(*words);
   if (exit_) return 0;
   if (const auto outcome = choose(*shell_, *words))

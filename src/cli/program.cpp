@@ -55,6 +55,15 @@ bool takes_rest(const std::string& line) {
   return words && std::find(words->begin(), words->end(), "-") != words->end();
 }
 
+/// For who starts without a bus.
+void tell_first_steps(Console& console) {
+  for (const auto* line :
+       {"`bus detect` looks for adapters and their bitrate; `bus can0` opens an interface",
+        "`scan` shows the drives, `use 1` chooses one, `status` shows its state",
+        "without a drive: `bus sim:FAMILY@1` simulates one (`drives` lists them); `help` lists all commands"})
+    console.note(console.in_language(line) + "\n");
+}
+
 /// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer. What a line
 /// begins goes on behind it, as at the prompt, and ends with the input.
 int run_pipe(Shell& shell) {
@@ -63,11 +72,14 @@ int run_pipe(Shell& shell) {
   LineRunner runner(shell);
   std::string line;
   int code = 0;
+  bool any = false;
   while (code == 0 && !runner.wants_exit() && next_line(shell, input, line)) {
+    any = true;
     shell.stay_open(!takes_rest(line));
     code = runner.run(line);
   }
   if (code == 0 && interrupted()) code = exit_code(Errc::interrupted);
+  if (!any && code == 0) tell_first_steps(shell.console());
   if (code != 0) shell.let_go();
   shell.stop_sync();
   return code;
@@ -157,10 +169,12 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
     return shell.report_error(may.error(), false);
   console.set_colour(shell.defaults().colour);
   if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell);
-  if (shell.defaults().bus.empty())
-    take_last_place(shell, shell.state_folder());
-  else if (const auto opened = open_chosen_bus(shell, shell.defaults()); !opened)
+  if (shell.defaults().bus.empty()) {
+    if (!take_last_place(shell, shell.state_folder()) && shell.defaults().nodes.empty())
+      tell_first_steps(console);
+  } else if (const auto opened = open_chosen_bus(shell, shell.defaults()); !opened) {
     return shell.report_error(opened.error(), false);
+  }
   return run_prompt(shell, console, !refuses_pager(words) && wants_pages());
 }
 

@@ -118,6 +118,24 @@ TEST_F(Completing, TakesTheFamilyOfANodeFromTheCabinetFileAsTheLineDoes) {
   fs::remove(file);
 }
 
+TEST_F(Completing, LooksInsideNamesWhereNoneBeginsSo) {
+  EXPECT_EQ(hint("param get gain", "Pn0214"), "Speed loop gain 1");
+  EXPECT_EQ(hint("param set LOOP", "Pn0214"), "Speed loop gain 1");
+  EXPECT_TRUE(complete("param get gain", shell).inside);
+  EXPECT_TRUE(offers_word("read actual_v", "position_actual_value"));
+  EXPECT_FALSE(complete("read statusw", shell).inside);
+  EXPECT_FALSE(offers_word("param get g", "Pn0214")) << "one letter is in too many";
+  EXPECT_TRUE(complete("gain", shell).candidates.empty()) << "no command";
+  shell.defaults().chinese = true;
+  EXPECT_EQ(hint("param get 环增益", "Pn0214"), "速度环增益 1");
+}
+
+TEST_F(Completing, OffersParametersWhereNoCommandBeginsSo) {
+  EXPECT_EQ(hint("Pn021", "Pn0214"), "Speed loop gain 1");
+  EXPECT_TRUE(offers_word("Pn0214=40", "Pn0214=40Hz"));
+  EXPECT_FALSE(offers_word("p", "Pn0214")) << "commands begin so";
+}
+
 TEST_F(Completing, OffersUnitsBehindANumber) {
   EXPECT_TRUE(offers_word("jog 60", "60rpm"));
   EXPECT_TRUE(offers_word("move 1.5", "1.5rev"));

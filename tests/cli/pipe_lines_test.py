@@ -44,4 +44,7 @@ with tempfile.TemporaryDirectory() as folder:
         check(f"{option} is refused: {done.returncode} {done.stderr}", done.returncode == 2 and b"there is no option" in done.stderr)
     done = subprocess.run([servoctl, "param", "get", "Pn0214", *drive], env=env, capture_output=True)
     check(f"and nothing was written: {done.stdout}", b"60 Hz" in done.stdout)
+    done = subprocess.run([servoctl], env={**env, "XDG_STATE_HOME": folder}, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True)
+    check(f"without lines and bus three lines say what to do first: {done.stderr}",
+          done.returncode == 0 and done.stderr.count(b"\n") == 3 and b"bus detect" in done.stderr and b"scan" in done.stderr)
 finish()

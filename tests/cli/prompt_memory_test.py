@@ -39,7 +39,7 @@ def remembered(place, folder=None, time_then="2026-01-01T00:00:00Z"):
 def last_place(state):
     # Without a state there is nothing to say, and the prompt is nowhere.
     t = Terminal(servoctl, state=state)
-    t.see(r"^servoctl> ")
+    t.see(r"^`bus detect`[^\n]*\n`scan`[^\n]*\nwithout a drive:[^\n]*\n?servoctl> ")
     t.type(f"bus {cell}\n")
     t.see(r"servoctl local:\S+> ")
     t.type("use 2\n")
@@ -87,7 +87,7 @@ def last_place(state):
         with open(file, "w", encoding="utf-8") as out:
             out.write(text)
         t = Terminal(servoctl, state=state)
-        t.see(r"^servoctl> ")
+        t.see(r"^`bus detect`[^\n]*\n`scan`[^\n]*\nwithout a drive:[^\n]*\n?servoctl> ")
         t.type("\x04")
         expect("exit code in another folder", 0, t.exit_code())
     # A FIFO in its place, and in that of the history, is waited for neither at the beginning nor at the end.

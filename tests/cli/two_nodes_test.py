@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """Two drives of one number, each a process: they are noticed, named, and nothing is written to them.
+And what a monitor in another process says of the heartbeat of a motion that is over.
 usage: two_nodes_test.py SERVOCTL"""
 import contextlib
 import json
@@ -182,4 +183,13 @@ with sims(bus, "gsd600@1?delay=2ms"):
         check(f"one of two: without power it is the way out\n{answer.stdout}{answer.stderr}", answer.returncode == 0 and "moved" in answer.stdout)
         answer = run(bus, "scan")
         check(f"one of two: each has its own number now\n{answer.stdout}{answer.stderr}", answer.returncode == 0 and "two nodes" not in answer.stderr)
+bus = f"local:monitored-{os.getpid()}"
+with sims(bus, "gsd600@1"):
+    monitor = subprocess.Popen([servoctl, "-b", bus, "monitor", "--for", "8s"], env=env, stdout=subprocess.PIPE, text=True)
+    time.sleep(0.5)
+    jog = run(bus, "jog", "60rpm", "--for", "500ms", "-n", "1", "-d", "gsd600", "--turn", "131072", "--yes")
+    seen = monitor.communicate(timeout=30)[0]
+    check(f"servoctl was a master with a heartbeat: {jog.stderr}", jog.returncode in (0, 1) and " 127 " in seen)
+    check(f"its regular end is no alarm\n{seen[-2000:]}", "ALARM" not in seen and "heartbeats lost     0" in seen)
+
 finish()

@@ -48,6 +48,13 @@ bool ends_as(std::string_view name, std::span<const std::string_view> endings) {
          });
 }
 
+/// ASCII case ignored.
+bool has_inside(std::string_view text, std::string_view part) {
+  return std::search(text.begin(), text.end(), part.begin(), part.end(), [](char a, char b) {
+           return equals_nocase({&a, 1}, {&b, 1});
+         }) != text.end();
+}
+
 bool begins_hidden(const std::string& name, std::string_view begun) {
   return name.starts_with(".") && !begun.starts_with(".");
 }
@@ -88,7 +95,9 @@ std::string Candidates::told(const std::string& english) const {
 bool Candidates::fits(std::string_view word) const { return starts_with_nocase(word, begun_); }
 
 void Candidates::add(std::string_view word, std::string_view hint) {
-  if (word.empty() || !fits(word) || !is_shown_as_it_is(word)) return;
+  if (inside_ && group_ != Candidate::Group::parameters && group_ != Candidate::Group::objects) return;
+  const bool taken = inside_ ? has_inside(word, begun_) || has_inside(hint, begun_) : fits(word);
+  if (word.empty() || !taken || !is_shown_as_it_is(word)) return;
   if (!known_.emplace(word).second) return;
   out_.push_back({std::string(word), std::string(hint), group_});
 }

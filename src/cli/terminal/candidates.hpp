@@ -25,6 +25,8 @@ class Candidates {
  public:
   Candidates(std::string begun, Shell& shell, BegunPlace place);
 
+  /// From now on objects and parameters are taken that have the word anywhere in their name.
+  void match_inside() { inside_ = true; }
   /// Of what is added from now on; the answer is the one before.
   Candidate::Group begin_group(Candidate::Group group) { return std::exchange(group_, group); }
   /// Taken where it begins as the word does, ASCII case ignored.
@@ -88,6 +90,7 @@ class Candidates {
   Candidate::Group group_ = Candidate::Group::values;
   std::string note_;
   bool any_file_ = false;
+  bool inside_ = false;
 };
 
 }  // namespace servoctl::cli

@@ -135,6 +135,15 @@ void add_all(Candidates& out, const std::vector<std::string>& words, const std::
   if (words.size() == after) out.add_commands(words, match.first);
 }
 
+/// A line that no command begins may begin with a parameter, as as_parameter_line() takes it.
+void add_assignments(Candidates& out) {
+  const auto* command = command::find_command("param set");
+  if (command != nullptr) out.add_values(command, command->parameters.front(), {});
+}
+
+/// What one letter is in, is too much to be listed.
+constexpr std::size_t kLeastInside = 2;
+
 }  // namespace
 
 Offer complete(std::string_view line, Shell& shell) {
@@ -146,6 +155,17 @@ Offer complete(std::string_view line, Shell& shell) {
   Candidates found(begun.last, shell, place);
   if (!add_prompt_words(found, words)) add_all(found, words, begun.last, place.settings.nodes_typed());
   Offer out{.typed = begun.typed, .candidates = found.take(), .note = found.note()};
+  if (out.candidates.empty() && words.empty() && !begun.last.empty()) {
+    add_assignments(found);
+    out.candidates = found.take();
+  }
+  if (out.candidates.empty() && !words.empty() && begun.last.size() >= kLeastInside) {
+    Candidates inside(begun.last, shell, place);
+    inside.match_inside();
+    add_all(inside, words, begun.last, place.settings.nodes_typed());
+    out.candidates = inside.take();
+    out.inside = true;
+  }
   prefer_exact(out.candidates, begun.last);
   for (auto& one : out.candidates)
     if (one.word.find_first_of(kNotPlain) != std::string::npos) one.word = as_word(one.word);

@@ -221,7 +221,7 @@ void LineEditor::complete() {
     line_.replace_before(typed.size(), only + (opens ? "" : " "));
     return;
   }
-  if (const auto further = begun_further(offer.candidates, typed); !further.empty())
+  if (const auto further = begun_further(offer.candidates, typed); !offer.inside && !further.empty())
     line_.replace_before(typed.size(), further);
   listed_ = std::move(offer.candidates);
 }

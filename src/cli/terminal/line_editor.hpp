@@ -21,6 +21,7 @@ namespace servoctl::cli {
 struct Offer {
   std::size_t typed = 0;  ///< Bytes at the end of the text that a candidate takes the place of.
   std::vector<Candidate> candidates;
+  bool inside = false;    ///< They have the text inside: none begins with it.
   std::string note = {};  ///< What may stand there where no word can be offered; shown, not put in.
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
+#include <array>
 #include <set>
 
 #include "base/format.hpp"
@@ -220,6 +221,46 @@ PromptText dressed_prompt(Shell& shell, const Console& console) {
   return out;
 }
 
+namespace {
+
+/// `Pn0214`, `Fn_33`, `PA-21`, `P0.03`: one or two letters, then a number.
+bool is_panel_number(std::string_view word) {
+  const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
+  constexpr std::string_view kDigits = "0123456789";
+  std::size_t at = 0;
+  while (at < word.size() && at < 2 && is_letter(word[at])) ++at;
+  if (at == 0) return false;
+  if (at < word.size() && (word[at] == '_' || word[at] == '-')) ++at;
+  return at < word.size() && kDigits.find(word[at]) != std::string_view::npos &&
+         word.find_first_not_of("0123456789.", at) == std::string_view::npos;
+}
+
+/// A value, not an option: `-5` is one too.
+bool is_value(const std::string& word) {
+  return !word.starts_with('-') || (word.size() > 1 && word.find_first_of("0123456789.") == 1);
+}
+
+}  // namespace
+
+std::vector<std::string> as_parameter_line(std::vector<std::string> words) {
+  if (words.empty()) return words;
+  const auto equals = words.front().find('=');
+  if (!is_panel_number(std::string_view(words.front()).substr(0, equals))) return words;
+  bool sets = equals != std::string::npos;
+  if (!sets && words.size() > 1 && words[1].starts_with('=')) {
+    words.front() += words[1];
+    words.erase(words.begin() + 1);
+    sets = true;
+  }
+  if (sets && words.front().ends_with('=') && words.size() > 1 && is_value(words[1])) {
+    words.front() += words[1];
+    words.erase(words.begin() + 1);
+  }
+  const std::array<std::string, 2> command{"param", sets ? "set" : "get"};
+  words.insert(words.begin(), command.begin(), command.end());
+  return words;
+}
+
 bool is_exit(const std::vector<std::string>& words) {
   return words.size() == 1 && (words.front() == "exit" || words.front() == "quit");
 }
@@ -271,10 +312,11 @@ std::optional<Outcome> choose(Shell& shell, const std::vector<std::string>& word
 }
 
 bool may_move(const std::string& line) {
-  const auto words = split_words(line);
-  if (!words || words->empty()) return false;
-  const auto match = match_command(*words);
-  return is_batch(*words) || (match.command != nullptr && match.command->effect >= command::Effect::moves);
+  const auto typed = split_words(line);
+  if (!typed || typed->empty()) return false;
+  const auto words = as_parameter_line(*typed);
+  const auto match = match_command(words);
+  return is_batch(words) || (match.command != nullptr && match.command->effect >= command::Effect::moves);
 }
 
 }  // namespace servoctl::cli

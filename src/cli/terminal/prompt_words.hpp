@@ -20,6 +20,11 @@ PromptText prompt_text(Shell& shell, std::size_t window = 0);
 /// The same as this terminal shows it: red where there are colours, ASCII where the locale wants it.
 PromptText dressed_prompt(Shell& shell, const Console& console);
 
+/// A line that begins with the number of a panel parameter as the command that it stands for: `Pn0214` is
+/// `param get Pn0214`, `Pn0214=45Hz` (also with blanks about the sign) is `param set Pn0214=45Hz`. Any other
+/// line as it is.
+std::vector<std::string> as_parameter_line(std::vector<std::string> words);
+
 /// Whether the line is `exit` or `quit`.
 bool is_exit(const std::vector<std::string>& words);
 
