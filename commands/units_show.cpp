@@ -1,6 +1,9 @@
 
+#include <algorithm>
+
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "cabinet/cabinet.hpp"
 #include "command/command.hpp"
 #include "command/motion_options.hpp"
 #include "drive/standard_objects.hpp"
@@ -58,6 +61,14 @@ std::string_view position_unit(const drive::Profile& profile) {
   return drive::meaning(drive::target_at(&profile, objects::kPositionActual), 0).unit;
 }
 
+/// A turn that the cabinet file gives the axis comes like the option.
+std::string_view turn_source(const Context& context, std::uint8_t node) {
+  const bool of_file = std::any_of(context.axes.begin(), context.axes.end(), [node](const auto* axis) {
+    return axis->node == node && axis->turn.has_value();
+  });
+  return of_file ? "`turn` of the axis in the cabinet file" : "--turn";
+}
+
 /// One measure of one node: what it is, and who tells it.
 List row(const Context& context, std::uint8_t node, Measure measure, std::string_view name,
          std::optional<double> turn, const motion::KnownTurn& known) {
@@ -73,7 +84,7 @@ List row(const Context& context, std::uint8_t node, Measure measure, std::string
   } else if (of_turn && turn) {
     value = turn;
     source = "--turn";
-    from = "--turn";
+    from = turn_source(context, node);
   } else if (told) {
     value = told->value;
     source = told->learned ? "kept" : "drive";
@@ -132,7 +143,7 @@ const Command kUnitsShow{
     .summary = "Show counts per revolution and rated torque, and their source",
     .details =
         "Increments (6064h) and encoder pulses per revolution and rated torque, as far as the family's rules "
-        "give them: from the drive's parameters, from what `units learn` kept, or from --turn. In JSON "
+        "give them: from the drive's parameters, from what `units learn` kept, or from --turn or the cabinet file. In JSON "
         "`source` is drive, kept, --turn or null. What is kept but not used is shown with the reason.",
     .parameters = kUnitsShowParameters,
     .examples = kUnitsShowExamples,

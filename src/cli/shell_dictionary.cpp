@@ -85,7 +85,8 @@ Result<void> Shell::prepare_profile(Run& run, bool changes) {
   if (!loaded) return fail(loaded.error());
   run.context.profile = *loaded;
   if (console_->is_verbose()) tell_family(run);
-  for (const auto& warning : (*loaded)->warnings) run.context.notices.push_back(warning);
+  for (const auto& warning : (*loaded)->warnings)
+    if (told_of_files_.insert(warning).second || run.settings.json) run.context.notices.push_back(warning);
   return {};
 }
 

@@ -74,8 +74,12 @@ Result<void> add_sheet(Profile& profile, const std::string& word) {
   if (!file) return fail(file.error());
   take_sheet(profile, *file);
   profile.data_sheet = word;
-  if (!file->diagnostics.empty())
-    profile.warnings.push_back(formatted("{0}: {1} errors, {2} warnings; `eds check {0}` lists them", word,
+  if (const auto found = file->diagnostics.size(); found == 1)
+    profile.warnings.push_back(file->error_count() == 1
+                                   ? formatted("{0}: 1 error; `eds check {0}` shows it", word)
+                                   : formatted("{0}: 1 warning; `eds check {0}` shows it", word));
+  else if (found > 1)
+    profile.warnings.push_back(formatted("{0}: {1} errors and {2} warnings; `eds check {0}` lists them", word,
                                          file->error_count(), file->warning_count()));
   return {};
 }

@@ -24,10 +24,11 @@ Value default_of(const std::optional<od::NodeValue>& value) {
   return number != nullptr ? formatted("$NODEID+0x{:X}", *number) : "$NODEID+" + od::to_string(value->value);
 }
 
-/// A float carried by an integer is shown as the number it is, beside its unit.
+/// A float carried by an integer is shown as the number it is, beside its unit; bits in hexadecimal.
 Value shown_default(const drive::Meaning& meaning, const od::Entry& entry) {
   const auto& value = entry.default_value;
-  if (!value || value->plus_node_id || meaning.encoding == od::Encoding::plain) return default_of(value);
+  const bool as_it_is = meaning.encoding == od::Encoding::plain && !meaning.bits;
+  if (!value || value->plus_node_id || as_it_is) return default_of(value);
   return drive::plain_text(meaning, value->value);
 }
 
