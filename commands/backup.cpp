@@ -107,8 +107,8 @@ void tell_lines(Context& context, const std::filesystem::path& file, std::uint8_
                     [](const settings::Backup::Entry& entry) { return entry.bytes.has_value(); }));
   if (lines == values) return;
   context.notices.push_back(formatted(
-      "{} has lines for {} of {} values: node-ID, bitrate and what is outside of its limits are comments, "
-      "entries of PDOs that are not in use have none; JSON keeps all",
+      "{} has lines for {} of {} values: node-ID, bitrate, what is outside of its limits and what may be "
+      "read-only are comments, entries of PDOs that are not in use have none; JSON keeps all",
       file.string(), lines, values));
 }
 

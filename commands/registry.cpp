@@ -106,6 +106,7 @@ extern const Command kReplay;
 extern const Command kDrives;
 extern const Command kEdsCheck;
 extern const Command kEdsVerify;
+extern const Command kEdsLearn;
 extern const Command kRun;
 extern const Command kSim;
 extern const Command kGateway;
@@ -222,6 +223,7 @@ constexpr Named kNamed[] = {
     {"drives", &commands::kDrives},
     {"eds check", &commands::kEdsCheck},
     {"eds verify", &commands::kEdsVerify},
+    {"eds learn", &commands::kEdsLearn},
     {"run", &commands::kRun},
     {"sim", &commands::kSim},
     {"gateway", &commands::kGateway},

@@ -120,12 +120,16 @@ std::string axis_text(const std::string& bus, const FoundAxis& axis, bool chines
   return out;
 }
 
+/// What a file that was learned says of the maker's objects is nothing to write.
+bool is_writable(const drive::DriveSetting& setting) { return setting.is_writable; }
+
 }  // namespace
 
 Result<FoundSettings> find_settings(show::Desk& desk, std::uint8_t node) {
   FoundSettings out;
   const std::uint8_t nodes[] = {node};
-  const auto snapshot = std::move(session::take_snapshots(*desk.session, *desk.profile, nodes, {}).front());
+  const auto snapshot =
+      std::move(session::take_snapshots(*desk.session, *desk.profile, nodes, is_writable).front());
   if (!snapshot) return fail(snapshot.error());
   const auto factory = settings::factory_side(*desk.profile, node);
   bool other_pdos = false;

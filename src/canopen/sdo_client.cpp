@@ -223,6 +223,10 @@ void SdoClient::on_upload_segment(const can::Frame& frame, TimePoint now) {
   const auto size = 7 - (frame.data[0] >> 1U & 0x07);
   data_.insert(data_.end(), frame.data.begin() + 1, frame.data.begin() + 1 + size);
   const bool last = (frame.data[0] & 0x01U) != 0;
+  if (size == 0 && !last) {  // It could go on so without end.
+    abort(sdo_abort::kLength, Errc::protocol, "it sent a segment without data that is not the last");
+    return;
+  }
   if (data_.size() > announced_.value_or(kMaxSdoUpload)) {
     abort(sdo_abort::kLength, Errc::protocol,
           formatted("it announced {} bytes and sent {}", announced_.value_or(kMaxSdoUpload), data_.size()));

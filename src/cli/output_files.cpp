@@ -17,8 +17,11 @@ struct Word {
   std::string_view command;
   std::string_view name;
 };
-constexpr Word kWords[] = {
-    {"pdo save", "file"}, {"report", "file"}, {"report", "--output"}, {"witness", "file"}};
+constexpr Word kWords[] = {{"pdo save", "file"},
+                           {"report", "file"},
+                           {"report", "--output"},
+                           {"witness", "file"},
+                           {"eds learn", "--output"}};
 
 }  // namespace
 

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <unordered_map>
 
 #include "base/format.hpp"
@@ -8,22 +7,12 @@
 #include "od/eds_compact.hpp"
 #include "od/eds_keys.hpp"
 #include "od/eds_section.hpp"
+#include "od/eds_value.hpp"
 #include "od/ini.hpp"
 #include "od/text_encoding.hpp"
 
 namespace servoctl::od {
 namespace {
-
-/// A value as eds_value() reads it. A real that is no number is written as its bits, a time as one number.
-std::string value_text(DataType type, const Value& value) {
-  const auto bits = [&] {
-    const auto bytes = encode(type, value).value_or(Bytes{});
-    return formatted("0x{:0{}X}", load_le(bytes), 2 * bytes.size());
-  };
-  if (type == DataType::time) return bits();
-  if (is_real(type) && !std::isfinite(to_double(value))) return bits();
-  return to_string(value);
-}
 
 class Writer {
  public:
@@ -33,7 +22,7 @@ class Writer {
     for (const auto& object : file.dictionary.objects())
       for (const auto& entry : object.entries)
         if (const auto value = settings.values.find(entry.address); value != settings.values.end())
-          texts_[entry.line].emplace_back(entry.address, value_text(entry.type, value->second));
+          texts_[entry.line].emplace_back(entry.address, eds_text(entry.type, value->second));
   }
 
   std::string write() {

@@ -1,5 +1,6 @@
 #include "od/eds_value.hpp"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -181,6 +182,16 @@ std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& f
                formatted("{}: {} fits {} for no node; it is not taken", key->key, shown(written), name(type)),
                "lower the number that is added to $NODEID");
   return std::nullopt;
+}
+
+std::string eds_text(DataType type, const Value& value) {
+  const auto bits = [&] {
+    const auto bytes = encode(type, value).value_or(Bytes{});
+    return formatted("0x{:0{}X}", load_le(bytes), 2 * bytes.size());
+  };
+  if (type == DataType::time) return bits();
+  if (is_real(type) && !std::isfinite(to_double(value))) return bits();
+  return to_string(value);
 }
 
 }  // namespace servoctl::od

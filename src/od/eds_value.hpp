@@ -34,4 +34,7 @@ enum class ValueUse : std::uint8_t { told, limit, written };
 std::optional<NodeValue> eds_value(const IniKey* key, DataType type, Findings& findings,
                                    ValueUse use = ValueUse::told);
 
+/// A value as eds_value() reads it. A real that is no number is written as its bits, a time as one number.
+std::string eds_text(DataType type, const Value& value);
+
 }  // namespace servoctl::od

@@ -7,7 +7,6 @@
 #include "canopen/node_id.hpp"
 #include "canopen/node_list.hpp"
 #include "canopen/sdo_frame.hpp"
-#include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/hearing.hpp"
@@ -102,20 +101,31 @@ Result<bool> is_energised(Session& session, std::uint8_t node) {
 }
 
 Result<bool> is_any_axis_energised(Session& session, std::uint8_t node) {
-  const auto open = [](const Error& error) {
-    return error.code == Errc::sdo_abort ? Result<bool>(false) : fail(error);
-  };
   const auto first = is_energised(session, node);
-  if (!first || *first || session.wary_of(node) != nullptr) return first;
+  if (!first || *first) return first;
+  const auto axes = further_axes(session, node);
+  if (!axes) return fail(axes.error());
+  return std::any_of(axes->begin(), axes->end(),
+                     [](const FurtherAxis& axis) { return drive::is_energised(axis.state); });
+}
+
+Result<std::vector<FurtherAxis>> further_axes(Session& session, std::uint8_t node) {
+  std::vector<FurtherAxis> out;
+  if (session.wary_of(node) != nullptr) return out;
   const auto type = session.upload(node, objects::kDeviceType);
-  if (!type) return open(type.error());
-  if (!drive::is_drive_type(load_le(*type))) return false;
-  for (unsigned axis = 2; axis <= drive::kMostAxes; ++axis) {
-    const auto word = session.upload(node, drive::of_axis(objects::kStatusword, axis));
-    if (!word) return open(word.error());
-    if (drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word))))) return true;
+  if (!type && type.error().code != Errc::sdo_abort) return fail(type.error());
+  if (!type || !drive::is_drive_type(load_le(*type))) return out;
+  std::vector<SdoRequest> requests;
+  for (unsigned axis = 2; axis <= drive::kMostAxes; ++axis)
+    requests.push_back({.node = node, .object = drive::of_axis(objects::kStatusword, axis)});
+  const auto words = session.transfer(requests);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!words[i] && words[i].error().code != Errc::sdo_abort) return fail(words[i].error());
+    if (words[i])
+      out.push_back(
+          {requests[i].object, drive::decode_state(static_cast<std::uint16_t>(load_le(*words[i])))});
   }
-  return false;
+  return out;
 }
 
 Result<std::map<std::uint8_t, std::string>> nodes_in_use(Session& session,

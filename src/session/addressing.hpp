@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "base/object_address.hpp"
+#include "drive/cia402.hpp"
 #include "drive/rules.hpp"
 #include "session/session.hpp"
 
@@ -43,10 +45,18 @@ std::string sharers_of(Session& session, std::uint8_t node);
 /// Whether the drive has power on its motor, and where two were noticed under this number, whether either
 /// has; one that has no statusword has none. Else as Session::upload().
 Result<bool> is_energised(Session& session, std::uint8_t node);
-/// The same of any axis of the node. The further ones (CiA 402-2: 800h higher each) are asked where 1000h
-/// says that it is a drive, until one is not there; no node that takes a request for a missing object for an
-/// alarm.
+/// The same of any axis of the node: also of further_axes().
 Result<bool> is_any_axis_energised(Session& session, std::uint8_t node);
+
+/// An axis of a node beside its first.
+struct FurtherAxis {
+  ObjectAddress statusword;
+  drive::DriveState state;
+};
+/// The axes 2 to drive::kMostAxes (CiA 402-2: objects 800h higher each) that have a statusword; a number
+/// between them may be missing, as that of an empty slot. None where 1000h does not say that the node is a
+/// drive, nor of a node that takes a request for a missing object for an alarm. Else as Session::upload().
+Result<std::vector<FurtherAxis>> further_axes(Session& session, std::uint8_t node);
 
 /// Sends the node the NMT command that puts a new address in force; nothing for a power cycle. What was heard
 /// of it is forgotten: another may answer under its number from now on.

@@ -7,6 +7,7 @@
 #include "base/format.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/addressing.hpp"
+#include "session/option_scope.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -24,23 +25,57 @@ Result<std::vector<Result<Bytes>>> ObjectSurvey::read(std::span<const ObjectAddr
   std::vector<Result<Bytes>> out;
   while (out.size() < objects.size()) {
     const auto part = objects.subspan(out.size(), std::min(kAtOnce, objects.size() - out.size()));
-    auto answers = ask(part);
-    if (const auto taken = take(answers, part, out); !taken) return fail(taken.error());
+    if (const auto done = read_part(part, out); !done) return fail(done.error());
     if (const auto quiet = check_alarms(part.back()); !quiet) return fail(quiet.error());
   }
   return out;
+}
+
+Result<std::vector<Result<Bytes>>> ObjectSurvey::read_despite_alarms(std::span<const ObjectAddress> objects) {
+  std::vector<Result<Bytes>> out;
+  despite_alarms_ = true;
+  Result<void> done;
+  while (done && out.size() < objects.size())
+    done = read_part(objects.subspan(out.size(), std::min(kAtOnce, objects.size() - out.size())), out);
+  despite_alarms_ = false;
+  heard_ = session_->watch().alarms(node_);
+  if (!done) return fail(done.error());
+  return out;
+}
+
+Result<void> ObjectSurvey::read_part(std::span<const ObjectAddress> objects,
+                                     std::vector<Result<Bytes>>& out) {
+  auto answers = ask(objects);
+  return take(answers, objects, out);
 }
 
 Result<bool> ObjectSurvey::is_enabled() { return is_any_axis_energised(*session_, node_); }
 
 std::vector<Result<Bytes>> ObjectSurvey::ask(std::span<const ObjectAddress> objects) {
   std::vector<SdoRequest> requests;
-  for (const auto object : objects) requests.push_back({.node = node_, .object = object});
+  for (const auto object : objects)
+    requests.push_back({.node = node_, .object = object, .despite_alarm = despite_alarms_});
+  return longest_ == kNoLimit ? session_->transfer(requests) : transfer_limited(requests);
+}
+
+/// The session has no limit of its own: what is too long is ended as by an interruption.
+std::vector<Result<Bytes>> ObjectSurvey::transfer_limited(std::span<const SdoRequest> requests) {
+  is_too_long_ = false;
+  const auto progress = session_->options().progress;
+  const auto cancelled = session_->options().cancelled;
+  using Progress = decltype(Options::progress);
+  const OptionScope counts(*session_, &Options::progress,
+                           Progress([&](std::size_t done, std::optional<std::size_t> total, TimePoint now) {
+                             is_too_long_ = is_too_long_ || std::max(done, total.value_or(0)) > longest_;
+                             if (progress) progress(done, total, now);
+                           }));
+  const OptionScope ends(*session_, &Options::cancelled,
+                         std::function<bool()>([&] { return is_too_long_ || (cancelled && cancelled()); }));
   return session_->transfer(requests);
 }
 
-/// What follows a read without an answer was not sent: it is asked for again if the node still answers, and
-/// so is what came late.
+/// What follows a read without an answer, or one that was given up, was not sent: it is asked for again if
+/// the node still answers, and so is what came late.
 Result<void> ObjectSurvey::take(std::vector<Result<Bytes>>& answers, std::span<const ObjectAddress> objects,
                                 std::vector<Result<Bytes>>& out) {
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -50,10 +85,17 @@ Result<void> ObjectSurvey::take(std::vector<Result<Bytes>>& answers, std::span<c
       if (const auto alive = check_alive(answer.error()); !alive) return alive;
       answer = std::move(ask(objects.subspan(i, 1)).front());
     }
+    const bool is_given_up = !answer && answer.error().code == Errc::interrupted && is_too_long_;
+    if (is_given_up) {
+      // The read of 1000h ends what the node still sends of the other.
+      if (const auto alive = check_alive(answer.error()); !alive) return alive;
+      answer = fail(drive_error(Errc::protocol, node_, objects[i],
+                                formatted("it sends more than {} bytes for this object", longest_)));
+    }
     if (!answer && !is_of_one_object(answer.error()) && answer.error().code != Errc::timeout)
       return fail(answer.error());
     out.push_back(std::move(answer));
-    if (is_silent) return {};
+    if (is_silent || is_given_up) return {};
   }
   return {};
 }

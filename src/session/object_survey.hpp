@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,16 +20,23 @@ class ObjectSurvey {
       : session_(&session), node_(node), heard_(session.watch().alarms(node)) {}
 
   /// One answer for each object: its bytes, the refusal (Errc::sdo_abort), or Errc::timeout and
-  /// Errc::protocol where this object alone was not answered properly. Errc::timeout if the node does not
-  /// answer a read of 1000h either, Errc::refused after an EMCY (it may be the answer to a request for an
-  /// object that the node lacks), Errc::bus, Errc::interrupted.
+  /// Errc::protocol where this object alone was not answered properly, or is longer than set_longest()
+  /// allows. Errc::timeout if the node does not answer a read of 1000h either, Errc::refused after an EMCY
+  /// (it may be the answer to a request for an object that the node lacks), Errc::bus, Errc::interrupted.
   Result<std::vector<Result<Bytes>>> read(std::span<const ObjectAddress> objects);
+  /// The same, but goes on after an EMCY, and asks as well for what the node's family says is an alarm there.
+  Result<std::vector<Result<Bytes>>> read_despite_alarms(std::span<const ObjectAddress> objects);
+
+  /// A read that brings more bytes is given up: a node may send without end.
+  void set_longest(std::size_t bytes) { longest_ = bytes; }
 
   /// Whether an axis of the node is enabled now: see is_any_axis_energised().
   Result<bool> is_enabled();
 
  private:
+  Result<void> read_part(std::span<const ObjectAddress> objects, std::vector<Result<Bytes>>& out);
   std::vector<Result<Bytes>> ask(std::span<const ObjectAddress> objects);
+  std::vector<Result<Bytes>> transfer_limited(std::span<const SdoRequest> requests);
   Result<void> take(std::vector<Result<Bytes>>& answers, std::span<const ObjectAddress> objects,
                     std::vector<Result<Bytes>>& out);
   Result<void> check_alive(const Error& silence);
@@ -37,6 +45,10 @@ class ObjectSurvey {
   Session* session_;
   std::uint8_t node_;
   std::uint32_t heard_;  ///< EMCYs before the last read.
+  bool despite_alarms_ = false;
+  static constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+  std::size_t longest_ = kNoLimit;
+  bool is_too_long_ = false;  ///< The last request brought more than that.
 };
 
 }  // namespace servoctl::session

@@ -108,6 +108,7 @@ class Lines {
   /// Why the line of a value is only shown; empty when it is one to be run.
   std::string reason_to_comment(const Backup::Entry& entry) const {
     if (is_address(profile_, entry.object)) return "for a drive that takes this one's place on the bus";
+    if (!may_be_written(profile_, entry.object)) return std::string(kNotKnownWritable);
     const auto range = range_missed(*profile_, backup_->identity.node, entry.object, *entry.bytes);
     return range.empty() ? range : formatted("the drive's own value, outside of the limits {}", range);
   }
@@ -133,6 +134,11 @@ class Lines {
 };
 
 }  // namespace
+
+bool may_be_written(const drive::Profile* profile, ObjectAddress object) {
+  const auto* entry = drive::target_at(profile, object).entry;
+  return entry == nullptr || od::writable(entry->access);
+}
 
 std::string range_missed(const drive::Profile& profile, std::uint8_t node, ObjectAddress object,
                          const Bytes& data) {

@@ -7,6 +7,7 @@
 #include "drive/quantity.hpp"
 #include "od/data_sheet.hpp"
 #include "od/dcf.hpp"
+#include "od/eds_writer.hpp"
 #include "settings/backup_formats.hpp"
 
 namespace servoctl::settings {
@@ -34,12 +35,10 @@ std::optional<std::uint32_t> kbps_of(const drive::Profile& profile, const Backup
   return std::nullopt;
 }
 
-/// `2026-11-18T11:06:40Z` as CiA 306-1, 4.6.1 writes it: `11-18-2026` and `11:06AM`.
 void set_time(std::string_view iso, od::DcfSettings& out) {
-  const auto hour = iso.size() < 16 ? std::nullopt : parse_digits(iso.substr(11, 2), 10);
-  if (!hour) return;
-  out.date = formatted("{}-{}-{}", iso.substr(5, 2), iso.substr(8, 2), iso.substr(0, 4));
-  out.time = formatted("{:02}:{}{}", (*hour + 11) % 12 + 1, iso.substr(14, 2), *hour < 12 ? "AM" : "PM");
+  const auto time = od::eds_time(iso);
+  out.date = time.date;
+  out.time = time.time;
 }
 
 /// The values of the text, read again.

@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "canopen/sdo_abort.hpp"
 #include "drive/assumed_unit.hpp"
+#include "drive/drive_settings.hpp"
 #include "drive/unit.hpp"
 #include "session/cob_id_check.hpp"
 #include "session/drive_units.hpp"
@@ -118,9 +119,20 @@ tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target&
   return fail(show::located(std::move(error), node, target.address));
 }
 
-Result<drive::Meaning> writable_meaning(std::uint8_t node, const drive::Target& target,
-                                        std::optional<od::DataType> type) {
+/// A file that was learned calls read-only what nobody knows to be writable.
+bool is_unknown(const drive::Profile* profile, const drive::Target& target) {
+  const auto index = target.address.index;
+  return profile != nullptr && index >= 0x2000 && index < 0x6000 && drive::is_learned(*profile);
+}
+
+Result<drive::Meaning> writable_meaning(const drive::Profile* profile, std::uint8_t node,
+                                        const drive::Target& target, std::optional<od::DataType> type) {
   auto meaning = drive::meaning(target, node);
+  if (!od::writable(meaning.access) && is_unknown(profile, target))
+    return named(make_error(Errc::usage, "is not known to be writable: `eds learn` cannot see that",
+                            formatted("where the manual says so, change its AccessType to rw in {}",
+                                      profile->data_sheet.string())),
+                 node, target, " ");
   if (!od::writable(meaning.access))
     return named(make_error(Errc::usage, "is read-only", "`read` shows its value; servoctl cannot set it"),
                  node, target, " ");
@@ -211,7 +223,7 @@ std::string name_of(const drive::Target& target) {
 
 Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Target& target,
                            std::string_view value, std::optional<od::DataType> type) {
-  auto meaning = writable_meaning(node, target, type);
+  auto meaning = writable_meaning(desk.profile, node, target, type);
   if (!meaning) return fail(meaning.error());
   if (!desk.dry_run || !type)
     if (const auto agreed = show::confirm_unlisted(desk, node, std::span(&target, 1)); !agreed)
@@ -234,7 +246,7 @@ Result<Change> make_change(show::Desk& desk, std::uint8_t node, const drive::Tar
 
 Result<void> check_change(const show::Desk& desk, std::uint8_t node, const drive::Target& target,
                           std::string_view value, std::optional<od::DataType> type) {
-  const auto meaning = writable_meaning(node, target, type);
+  const auto meaning = writable_meaning(desk.profile, node, target, type);
   if (!meaning) return fail(meaning.error());
   const bool asks_size = !type && (!meaning->type_known || !meaning->size_known);
   if (asks_size || asks_unit(desk, target, value) || asks_measure(desk, *meaning, value)) return {};

@@ -53,6 +53,8 @@ std::vector<std::string> lines_between(const drive::Profile* profile, const Side
       comments.push_back(formatted("# {} alone has {}", comment_text(b.title), to_string(object)));
     else if (!line.empty() && is_address(profile, object))
       comments.push_back("# not changed: " + line);
+    else if (!line.empty() && !may_be_written(profile, object))
+      comments.push_back(formatted("# {}: {}", kNotKnownWritable, line));
     else if (both)
       wanted.emplace(object, data);
   }

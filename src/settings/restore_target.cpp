@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "base/format.hpp"
 #include "drive/cia402.hpp"
@@ -135,10 +136,15 @@ Result<void> RestoreTarget::check_line_address(const Backup::Entry& entry) const
 
 Result<void> RestoreTarget::choose_values() {
   std::map<ObjectAddress, std::string_view> settings;
-  for (const auto& setting : drive::settings_of(*desk_->profile))
+  std::set<ObjectAddress> undecided;
+  for (const auto& setting : drive::settings_of(*desk_->profile)) {
     settings.emplace(setting.entry->address, setting.left_out);
+    if (!setting.is_writable) undecided.insert(setting.entry->address);
+  }
   for (const auto& entry : backup_->entries) {
-    if (is_out_of_reach(entry)) continue;
+    const bool is_undecided = entry.bytes && undecided.count(entry.object) > 0;
+    undecided_ += is_undecided ? 1U : 0U;
+    if (is_undecided || is_out_of_reach(entry)) continue;
     const bool address = is_own_address(entry.object);
     if (!entry.bytes || (address && !choice_.with_address)) continue;
     if (const auto answers = check_line_address(entry); !answers) return answers;
@@ -153,11 +159,20 @@ Result<void> RestoreTarget::choose_values() {
       return left_out;
   }
   if (choice_.keep) add_copies(settings);
+  tell_kept();
+  return {};
+}
+
+void RestoreTarget::tell_kept() const {
   if (unreachable_ > 0)
     desk_->notices.push_back(
         formatted("node {}: {} values of {} have no Modbus register and stay as they are", node_,
                   unreachable_, title_));
-  return {};
+  if (undecided_ > 0)
+    desk_->notices.push_back(formatted(
+        "node {}: {} values of {} stay as they are: `eds learn` could not see whether they can be written; where "
+        "the manual says so, change AccessType to rw in {}",
+        node_, undecided_, title_, desk_->profile->data_sheet.string()));
 }
 
 /// What the drive takes from its parameters at its start has to stand there too, unless the file says what

@@ -59,6 +59,7 @@ class RestoreTarget {
   bool is_own_address(ObjectAddress object) const;
   Result<void> leave_out(const Backup::Entry& entry, std::string_view reason);
   Result<void> choose_values();
+  void tell_kept() const;
   void add_copies(const std::map<ObjectAddress, std::string_view>& settings);
   Result<void> read_present();
   bool same_length(ObjectAddress object, const Bytes& data) const;
@@ -82,6 +83,7 @@ class RestoreTarget {
   std::vector<Error> left_;
   bool keeps_address_ = false;
   std::size_t unreachable_ = 0;  ///< Values without a Modbus register, where it is reached over Modbus.
+  std::size_t undecided_ = 0;    ///< Values of which nobody knows whether they can be written.
 };
 
 }  // namespace servoctl::settings

@@ -103,6 +103,7 @@ LINES = {
     "pdo send": ("pdo send RPDO1 0x06" + SILENT, ELAPSED),
     "test comm": ("test comm --count 80 --longest 10s -b sim:gsd600@1?delay=20ms -n 1 -d gsd600", LEFT),
     "eds verify": ("eds verify many.eds" + SLOW, BAR),
+    "eds learn": ("eds learn -o learned.eds --range 4000-4180" + SLOW, BAR),
     "test io": ("test io --for 2s" + THERE, LATEST),
     "test jog": ("test jog 60rpm --limit 600rpm" + TURN, BAR),
     "test home": ("test home 17 --spread 5 --limit 900rpm --window 5rev --panel PA-20=0,PA-74=1 -n 1 -d sv2 -b sim:sv2@1?panel=PA-20=0,PA-74=1", LATEST),

@@ -37,6 +37,7 @@ OF_THE_MACHINE = r"((forward|backward): )?(longest round trip|最长往返时间
 BUSES = {
     "address 5": "sim:gsd600@1",
     "eds verify": "sim:sv2@1",
+    "eds learn": "sim:sv2@1",
     "cabinet init -b can0 --family": "sim:gsd600@1,da200@2",
     "lss scan --vendor": "sim:sv2@3,sv2@4?lss",
     "lss scan": "sim:sv2@255,da200@255,gsd600@1?lss",

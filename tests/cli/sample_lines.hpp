@@ -123,6 +123,7 @@ inline const std::map<std::string, std::string> kSampleLines{
     {"cabinet diff", "cabinet diff DIR/cabinet.toml DIR/cabinet.toml"},
     {"eds check", "eds check EDS"},
     {"eds verify", "eds verify EDS -n 1"},
+    {"eds learn", "eds learn -o DIR/learned.eds --range 6040-6041 -n 1"},
     {"run", "run DIR/lines.servoctl"},
     {"sim", "sim FAMILY@3"},
     {"gateway", "gateway --listen DIR/gateway --allow write -y"},
@@ -152,6 +153,7 @@ class SampleLines {
   SampleLines(const SampleLines&) = delete;
   SampleLines& operator=(const SampleLines&) = delete;
   ~SampleLines() { fs::remove_all(dir_); }
+  const fs::path& folder() const { return dir_; }
 
   /// The exit code; frames are those that were on the bus. Without `names_family` no family is given.
   int perform(std::string line, const std::string& option = {}, bool names_family = true) {

@@ -15,6 +15,7 @@ const std::map<std::string, std::string, std::less<>> kLines{
     {"diff", "diff node:1 factory"},
     {"disable", "disable"},
     {"eds verify", "eds verify %missing.eds"},
+    {"eds learn", "eds learn -o %learned.eds --range 6040-6041 --despite-alarms -y"},
     {"enable", "enable"},
     {"fault clear-history", "fault clear-history"},
     {"fault reset", "fault reset"},

@@ -40,6 +40,7 @@ cabinet swap one --yes
 diff good.json node:1
 verify good.json
 eds verify good.eds
+eds learn --output down.eds
 restore good.json --yes
 clone --from 1 --to 2 --yes
 address 5 --yes

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <set>
 #include <utility>
@@ -23,6 +25,7 @@ class LyingObjects final : public canopen::ObjectStore {
 
   std::uint32_t read(ObjectAddress object, Bytes& out) override {
     if (unsupported.contains(object)) return canopen::sdo_abort::kUnsupportedAccess;
+    if (const auto refused = refusals.find(object); refused != refusals.end()) return refused->second;
     const auto found = values.find(object);
     if (found == values.end() && answers_all) out = {0};
     if (found == values.end()) return answers_all ? 0 : absence(object);
@@ -46,11 +49,14 @@ class LyingObjects final : public canopen::ObjectStore {
   std::set<ObjectAddress> write_only;
   std::set<ObjectAddress> read_only;
   std::set<ObjectAddress> unsupported;
+  std::map<ObjectAddress, std::uint32_t> refusals;  ///< The abort code of a read.
+  std::uint32_t lacking = 0;                        ///< The abort code for objects that are not there.
   bool answers_all = false;
   std::vector<ObjectAddress> writes;
 
  private:
   std::uint32_t absence(ObjectAddress object) const {
+    if (lacking != 0) return lacking;
     const auto near = values.lower_bound({object.index, 0});
     return near != values.end() && near->first.index == object.index ? canopen::sdo_abort::kNoSubIndex
                                                                      : canopen::sdo_abort::kNoObject;
@@ -85,6 +91,14 @@ class LyingNode {
   std::set<ObjectAddress> late_once;  ///< The first request for one is lost.
   std::set<ObjectAddress> alarming;   ///< A request for one is answered, and an EMCY sent.
   bool resets_alarms = false;
+  std::set<ObjectAddress> booting;  ///< A request for one is answered, and a boot-up sent.
+  std::map<ObjectAddress, std::function<void()>> on_request;
+  std::vector<ObjectAddress> asked;  ///< Reads, in their order.
+  /// Objects from silent_from up to silent_to that it lacks are not answered.
+  std::uint16_t silent_from = 0xFFFF;
+  std::uint16_t silent_to = 0x3FFF;
+  /// Objects that it sends without end, in segments of so many bytes.
+  std::map<ObjectAddress, unsigned> endless;
   bool dead = false;
   std::size_t dies_after = 1'000'000;  ///< Requests.
   std::size_t requests = 0;
@@ -99,6 +113,13 @@ class LyingNode {
                                frame.data[3]};
     const bool begins = (frame.data[0] & 0xE0U) == 0x40;
     if (begins && (silent.contains(object) || late_once.erase(object) > 0)) return;
+    if (begins) asked.push_back(object);
+    if (begins && object.index >= silent_from && object.index <= silent_to &&
+        !objects.values.contains(object))
+      return;
+    if (streams(to, frame, begins ? endless.find(object) : endless.end())) return;
+    if (const auto call = on_request.find(object); begins && call != on_request.end()) call->second();
+    if (begins && booting.contains(object)) to.arrive("701#00");
     if (begins && alarming.contains(object)) {
       to.arrive("081#3081210000000000");
       if (resets_alarms) to.arrive("081#0000000000000000");
@@ -107,6 +128,25 @@ class LyingNode {
     while (const auto out = server_.take_frame()) to.arrive(*out, std::chrono::milliseconds(1));
   }
 
+  /// Whether the frame is of a transfer that does not end.
+  bool streams(session::ScriptedBus& to, const can::Frame& frame,
+               std::map<ObjectAddress, unsigned>::const_iterator begun) {
+    can::Frame out{.id = 0x581, .size = 8};
+    const bool is_segment = (frame.data[0] & 0xE0U) == 0x60;
+    if (begun != endless.end()) {
+      segment_ = begun->second;
+      out.data = {0x40, frame.data[1], frame.data[2], frame.data[3]};
+    } else if (segment_ && is_segment) {
+      out.data[0] = static_cast<std::uint8_t>((frame.data[0] & 0x10U) | (7U - *segment_) << 1U);
+    } else {
+      segment_.reset();
+      return false;
+    }
+    to.arrive(out, std::chrono::milliseconds(1));
+    return true;
+  }
+
+  std::optional<unsigned> segment_;  ///< Bytes of each segment, while it sends without end.
   canopen::SdoServer server_;
 };
 

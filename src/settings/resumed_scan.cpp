@@ -1,0 +1,45 @@
+#include "settings/resumed_scan.hpp"
+
+#include <string>
+#include <system_error>
+
+#include "base/file.hpp"
+#include "base/format.hpp"
+#include "settings/scan_file.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+Result<bool> refuse_scan(std::string what) {
+  return fail(Errc::refused, std::move(what),
+              "delete that file to scan from the beginning, or name another file");
+}
+
+}  // namespace
+
+Result<bool> resume_scan(show::Desk& desk, const std::filesystem::path& kept_in,
+                         const session::Identity& identity, session::ScanState& state) {
+  std::error_code error;
+  if (!std::filesystem::exists(kept_in, error)) return false;
+  const auto text = read_file(kept_in);
+  if (!text) return fail(text.error());
+  if (!is_scan_file(*text)) return refuse_scan(formatted("{} is no scan of servoctl", kept_in.string()));
+  const auto begin_anew = [&](std::string_view why) {
+    desk.notices.push_back(formatted("{}: {}; the scan begins anew, and replaces it", kept_in.string(), why));
+    return false;
+  };
+  auto kept = read_scan(*text);
+  if (!kept) return begin_anew("it is damaged, or of another version");
+  if (kept->identity != identity_text(desk.session->url(), identity))
+    return refuse_scan(formatted("{} keeps the scan of another drive, node or bus", kept_in.string()));
+  if (is_one_of_many(identity))
+    return begin_anew("the drive has no serial number that tells it from others of its kind (1018h)");
+  if (kept->state.ranges != state.ranges)
+    return refuse_scan(formatted("{} keeps a scan of {}", kept_in.string(), ranges_text(kept->state.ranges)));
+  state = std::move(kept->state);
+  desk.notices.push_back(formatted("the scan that {} keeps goes on at {} of {} indexes", kept_in.string(),
+                                   state.done, state.indexes()));
+  return true;
+}
+
+}  // namespace servoctl::settings

@@ -1,0 +1,202 @@
+#include "settings/scan_file.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "base/format.hpp"
+#include "base/number.hpp"
+#include "base/text.hpp"
+
+namespace servoctl::settings {
+namespace {
+
+constexpr std::string_view kTitle = "servoctl scan 2";
+constexpr std::string_view kEnd = "end";
+constexpr std::size_t kMostRanges = 16;
+constexpr std::string_view kWriteOnly = "w";
+constexpr std::string_view kRefused = "!";
+constexpr std::string_view kHowWritten =
+    "write them in hexadecimal, from 1000 to 9FFF: --range 2000-2FFF,6000-67FF";
+
+std::optional<std::uint64_t> hexadecimal(std::string_view text, std::uint64_t most) {
+  const auto number = parse_digits(text, 16);
+  return number && *number <= most ? number : std::nullopt;
+}
+
+/// `2000`, `0x2000`, `2000h`.
+std::optional<std::uint64_t> index_of(std::string_view text) {
+  if (text.starts_with("0x") || text.starts_with("0X"))
+    text.remove_prefix(2);
+  else if (text.ends_with('h') || text.ends_with('H'))
+    text.remove_suffix(1);
+  return hexadecimal(text, 0x9FFF);
+}
+
+std::optional<session::IndexRange> parse_range(std::string_view text) {
+  const auto dash = std::min(text.find('-'), text.size());
+  const auto first = index_of(trim(text.substr(0, dash)));
+  const auto last = dash == text.size() ? first : index_of(trim(text.substr(dash + 1)));
+  if (!first || !last || *first < 0x1000 || *last < *first) return std::nullopt;
+  return session::IndexRange{static_cast<std::uint16_t>(*first), static_cast<std::uint16_t>(*last)};
+}
+
+std::optional<Bytes> parse_bytes(std::string_view text) {
+  Bytes out;
+  if (text == "-") return out;
+  if (text.size() % 2 != 0 || text.size() / 2 > session::kScannedBytes) return std::nullopt;
+  for (std::size_t i = 0; i < text.size(); i += 2) {
+    const auto byte = hexadecimal(text.substr(i, 2), 0xFF);
+    if (!byte) return std::nullopt;
+    out.push_back(static_cast<std::uint8_t>(*byte));
+  }
+  return out;
+}
+
+/// `6041:0 2 5002`, `2001:0 w`, `2002:0 ! 08000022`.
+bool take_entry(const std::vector<std::string_view>& words, session::ScanState& state) {
+  const auto object = words.size() < 2 ? std::nullopt : parse_object_address(words[0]);
+  if (!object) return false;
+  if (words.size() == 2 && words[1] == kWriteOnly) {
+    state.entries.push_back({*object, false});
+    return true;
+  }
+  if (words.size() != 3) return false;
+  if (words[1] == kRefused) {
+    const auto code = hexadecimal(words[2], 0xFFFF'FFFF);
+    if (code) state.refusals.push_back({*object, static_cast<std::uint32_t>(*code)});
+    return code.has_value();
+  }
+  const auto size = parse_digits(words[1], 10);
+  auto bytes = parse_bytes(words[2]);
+  if (!size || !bytes || bytes->size() != std::min<std::uint64_t>(*size, session::kScannedBytes))
+    return false;
+  state.entries.push_back({*object, true, *size, std::move(*bytes)});
+  return true;
+}
+
+/// How many lines of objects the head announces.
+struct Announced {
+  std::optional<std::uint64_t> lines;
+};
+
+bool take_head(std::string_view key, std::string_view value, KeptScan& out, Announced& announced) {
+  if (key == "drive") {
+    out.identity = value;
+    return true;
+  }
+  if (key == "ranges") {
+    auto ranges = parse_ranges(value);
+    if (ranges) out.state.ranges = std::move(*ranges);
+    return ranges.has_value();
+  }
+  const auto number = parse_digits(value, 10);
+  if (key == "lines") {
+    announced.lines = number;
+    return number.has_value();
+  }
+  if (key != "done" || !number || *number > out.state.indexes()) return false;
+  out.state.done = *number;
+  return true;
+}
+
+/// No object twice, and none of an index that is not done.
+bool is_consistent(const session::ScanState& state) {
+  std::set<std::uint16_t> done;
+  for (std::size_t i = 0; i < state.done; ++i) done.insert(state.index_at(i));
+  std::set<ObjectAddress> seen;
+  const auto is_new = [&](const auto& each) {
+    return done.contains(each.object.index) && seen.insert(each.object).second;
+  };
+  return std::all_of(state.entries.begin(), state.entries.end(), is_new) &&
+         std::all_of(state.refusals.begin(), state.refusals.end(), is_new);
+}
+
+}  // namespace
+
+std::filesystem::path scan_file(const std::filesystem::path& output) {
+  auto out = output;
+  out += ".part";
+  return out;
+}
+
+std::string identity_text(std::string_view bus, const session::Identity& identity) {
+  auto out = formatted("{} {}", bus, identity.node);
+  for (const auto& number :
+       {identity.device_type, identity.vendor_id, identity.product_code, identity.revision, identity.serial})
+    out += number ? formatted(" {:08X}", *number) : std::string(" -");
+  for (const auto* name : {&identity.device_name, &identity.hardware_version, &identity.software_version})
+    out += formatted(" |{}", to_hex(Bytes(name->begin(), name->end()), ""));
+  return out;
+}
+
+bool is_one_of_many(const session::Identity& identity) {
+  return !identity.vendor_id || !identity.product_code || !identity.serial || *identity.serial == 0;
+}
+
+std::string scan_text(std::string_view identity, const session::ScanState& state) {
+  auto out = formatted("{}\ndrive {}\nranges {}\ndone {}\nlines {}\n", kTitle, identity,
+                       ranges_text(state.ranges), state.done, state.entries.size() + state.refusals.size());
+  for (const auto& entry : state.entries) {
+    const auto place = formatted("{:04X}:{:X}", entry.object.index, entry.object.sub);
+    out += entry.readable ? formatted("{} {} {}\n", place, entry.size,
+                                      entry.begin.empty() ? "-" : to_hex(entry.begin, ""))
+                          : formatted("{} {}\n", place, kWriteOnly);
+  }
+  for (const auto& refusal : state.refusals)
+    out += formatted("{:04X}:{:X} {} {:08X}\n", refusal.object.index, refusal.object.sub, kRefused,
+                     refusal.abort_code);
+  return out + formatted("{}\n", kEnd);
+}
+
+bool is_scan_file(std::string_view text) { return text.starts_with("servoctl scan "); }
+
+std::optional<KeptScan> read_scan(std::string_view text) {
+  constexpr std::size_t kHeadLines = 5;
+  KeptScan out;
+  Announced announced;
+  auto lines = split(text, '\n');
+  if (!lines.empty() && lines.back().empty()) lines.pop_back();
+  if (lines.size() <= kHeadLines || lines.front() != kTitle || lines.back() != kEnd) return std::nullopt;
+  for (std::size_t i = 1; i + 1 < lines.size(); ++i) {
+    const auto line = lines[i];
+    const auto blank = std::min(line.find(' '), line.size());
+    const bool taken = i < kHeadLines
+                           ? take_head(line.substr(0, blank), trim(line.substr(blank)), out, announced)
+                           : take_entry(split(line, ' '), out.state);
+    if (!taken) return std::nullopt;
+  }
+  const bool is_whole = !out.state.ranges.empty() && !out.identity.empty() &&
+                        announced.lines == out.state.entries.size() + out.state.refusals.size();
+  return is_whole && is_consistent(out.state) ? std::optional(std::move(out)) : std::nullopt;
+}
+
+Result<std::vector<session::IndexRange>> parse_ranges(std::string_view text) {
+  std::vector<session::IndexRange> out;
+  const auto parts = split(text, ',');
+  if (parts.size() > kMostRanges)
+    return fail(Errc::usage,
+                formatted("--range names {} ranges, and at most {} are possible", parts.size(), kMostRanges));
+  for (const auto part : parts) {
+    if (trim(part).empty() && parts.size() > 1)
+      return fail(Errc::usage, formatted("'{}': a range is missing beside a comma", text),
+                  std::string(kHowWritten));
+    const auto range = parse_range(trim(part));
+    if (!range)
+      return fail(Errc::usage, formatted("'{}' is no range of indexes", part), std::string(kHowWritten));
+    for (const auto& other : out)
+      if (range->first <= other.last && other.first <= range->last)
+        return fail(Errc::usage, formatted("'{}': an index would be scanned twice", part));
+    out.push_back(*range);
+  }
+  if (out.empty()) return fail(Errc::usage, "--range names no indexes", std::string(kHowWritten));
+  std::sort(out.begin(), out.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  return out;
+}
+
+std::string ranges_text(const std::vector<session::IndexRange>& ranges) {
+  std::string out;
+  for (const auto& range : ranges) append(out, formatted("{:04X}-{:04X}", range.first, range.last), ",");
+  return out;
+}
+
+}  // namespace servoctl::settings
