@@ -115,15 +115,12 @@ Result<std::vector<FurtherAxis>> further_axes(Session& session, std::uint8_t nod
   const auto type = session.upload(node, objects::kDeviceType);
   if (!type && type.error().code != Errc::sdo_abort) return fail(type.error());
   if (!type || !drive::is_drive_type(load_le(*type))) return out;
-  std::vector<SdoRequest> requests;
-  for (unsigned axis = 2; axis <= drive::kMostAxes; ++axis)
-    requests.push_back({.node = node, .object = drive::of_axis(objects::kStatusword, axis)});
-  const auto words = session.transfer(requests);
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (!words[i] && words[i].error().code != Errc::sdo_abort) return fail(words[i].error());
-    if (words[i])
-      out.push_back(
-          {requests[i].object, drive::decode_state(static_cast<std::uint16_t>(load_le(*words[i])))});
+  const auto alarms = session.watch().alarms(node);
+  for (unsigned axis = 2; axis <= drive::kMostAxes && session.watch().alarms(node) == alarms; ++axis) {
+    const auto object = drive::of_axis(objects::kStatusword, axis);
+    const auto word = session.upload(node, object);
+    if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
+    if (word) out.push_back({object, drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))});
   }
   return out;
 }

@@ -55,7 +55,8 @@ struct FurtherAxis {
 };
 /// The axes 2 to drive::kMostAxes (CiA 402-2: objects 800h higher each) that have a statusword; a number
 /// between them may be missing, as that of an empty slot. None where 1000h does not say that the node is a
-/// drive, nor of a node that takes a request for a missing object for an alarm. Else as Session::upload().
+/// drive, nor of a node that takes a request for a missing object for an alarm; after an EMCY no further one
+/// is asked for. Else as Session::upload().
 Result<std::vector<FurtherAxis>> further_axes(Session& session, std::uint8_t node);
 
 /// Sends the node the NMT command that puts a new address in force; nothing for a power cycle. What was heard

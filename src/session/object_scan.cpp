@@ -85,12 +85,11 @@ std::uint16_t ScanState::index_at(std::size_t place) const {
 }
 
 ObjectScan::ObjectScan(Session& session, std::uint8_t node, ObjectSurvey& survey,
-                       std::vector<ObjectAddress> statuswords, bool despite_alarms, ScanState& state)
+                       std::vector<ObjectAddress> statuswords, ScanState& state)
     : session_(&session),
       node_(node),
       survey_(&survey),
       statuswords_(std::move(statuswords)),
-      despite_alarms_(despite_alarms),
       state_(&state),
       boots_(session.watch().boots(node)) {
   survey.set_longest(kLongestScanned);
@@ -117,7 +116,7 @@ Result<void> ObjectScan::run(const std::function<Result<void>()>& keep) {
 /// scan would find objects that are none.
 Result<void> ObjectScan::learn_lacking_code() {
   const ObjectAddress objects[] = {{kImprobable[0], 0}, {kImprobable[1], 0}};
-  const auto answers = survey(objects);
+  const auto answers = survey_->read(objects);
   if (!answers) return fail(answers.error());
   if (is_silent(answers->front()) && is_silent(answers->back()))
     return fail(silent_about_absence(node_, objects[1]));
@@ -152,7 +151,7 @@ Result<void> ObjectScan::scan_part(std::size_t count) {
   state_->entries.resize(entries);
   state_->refusals.resize(refusals);
   const bool is_alarm = quiet.error().code == Errc::refused && session_->watch().alarms(node_) != alarms;
-  if (!is_alarm || despite_alarms_) return quiet;
+  if (!is_alarm || survey_->goes_on_despite_alarms()) return quiet;
   for (const auto object : wanted) state_->refusals.push_back({object, kRaisedAlarm});
   state_->done += count;
   auto error = quiet.error();
@@ -169,11 +168,7 @@ Result<std::vector<Result<Bytes>>> ObjectScan::take_part(const std::vector<Objec
   if (!answers) return fail(answers.error());
   for (std::size_t i = 0; i < wanted.size(); ++i)
     if (const auto taken = take_index(wanted[i].index, (*answers)[i]); !taken) return fail(taken.error());
-  return survey(statuswords_);
-}
-
-Result<std::vector<Result<Bytes>>> ObjectScan::survey(std::span<const ObjectAddress> objects) {
-  return despite_alarms_ ? survey_->read_despite_alarms(objects) : survey_->read(objects);
+  return survey_->read(statuswords_);
 }
 
 Result<void> ObjectScan::judge_state(const std::vector<Result<Bytes>>& statuswords) {
@@ -204,7 +199,7 @@ Result<drive::DriveState> ObjectScan::end_of_reaction(ObjectAddress statusword) 
   for (;;) {
     if (const auto waited = session_->wait([] { return false; }, session_->now() + kBetweenLooks); !waited)
       return fail(waited.error());
-    const auto words = survey(std::span(&statusword, 1));
+    const auto words = survey_->read(std::span(&statusword, 1));
     if (!words) return fail(words.error());
     if (!words->front()) return fail(words->front().error());
     const auto state = state_in(*words->front());
@@ -259,7 +254,7 @@ Result<void> ObjectScan::take_subs(std::uint16_t index, unsigned counted,
 }
 
 Result<std::vector<Result<Bytes>>> ObjectScan::read(std::span<const ObjectAddress> objects) {
-  auto answers = survey(objects);
+  auto answers = survey_->read(objects);
   if (!answers) return answers;
   for (std::size_t i = 0; i < answers->size(); ++i) {
     silent_in_a_row_ = is_silent((*answers)[i]) ? silent_in_a_row_ + 1 : 0;

@@ -62,10 +62,9 @@ Error silent_about_absence(std::uint8_t node, ObjectAddress object);
 /// statuswords of the axes: it ends when one is energised, and when the node restarts.
 class ObjectScan {
  public:
-  /// `statuswords`: those that the node has. `despite_alarms`: an EMCY does not end it, and the reaction of
-  /// an axis to the fault is awaited before anything more is read.
+  /// `statuswords`: those that the node has. An axis that reacts to a fault is waited for.
   ObjectScan(Session& session, std::uint8_t node, ObjectSurvey& survey,
-             std::vector<ObjectAddress> statuswords, bool despite_alarms, ScanState& state);
+             std::vector<ObjectAddress> statuswords, ScanState& state);
 
   /// Goes on where the state stands; `keep` is called now and then, and before an error is returned. The
   /// errors are those of ObjectSurvey::read(), Errc::refused for a drive that is enabled, that restarted, or
@@ -81,7 +80,6 @@ class ObjectScan {
   Result<std::vector<Result<Bytes>>> take_part(const std::vector<ObjectAddress>& wanted);
   Result<void> judge_state(const std::vector<Result<Bytes>>& statuswords);
   Result<drive::DriveState> end_of_reaction(ObjectAddress statusword);
-  Result<std::vector<Result<Bytes>>> survey(std::span<const ObjectAddress> objects);
   Result<void> take_index(std::uint16_t index, const Result<Bytes>& first);
   Result<void> walk_subs(std::uint16_t index, const Result<Bytes>& first);
   Result<void> take_subs(std::uint16_t index, unsigned counted, std::optional<std::uint32_t> end_code);
@@ -94,7 +92,6 @@ class ObjectScan {
   std::uint8_t node_;
   ObjectSurvey* survey_;
   std::vector<ObjectAddress> statuswords_;
-  bool despite_alarms_;
   ScanState* state_;
   std::uint32_t boots_;
   std::size_t silent_in_a_row_ = 0;

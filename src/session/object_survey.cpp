@@ -25,28 +25,11 @@ Result<std::vector<Result<Bytes>>> ObjectSurvey::read(std::span<const ObjectAddr
   std::vector<Result<Bytes>> out;
   while (out.size() < objects.size()) {
     const auto part = objects.subspan(out.size(), std::min(kAtOnce, objects.size() - out.size()));
-    if (const auto done = read_part(part, out); !done) return fail(done.error());
+    auto answers = ask(part);
+    if (const auto taken = take(answers, part, out); !taken) return fail(taken.error());
     if (const auto quiet = check_alarms(part.back()); !quiet) return fail(quiet.error());
   }
   return out;
-}
-
-Result<std::vector<Result<Bytes>>> ObjectSurvey::read_despite_alarms(std::span<const ObjectAddress> objects) {
-  std::vector<Result<Bytes>> out;
-  despite_alarms_ = true;
-  Result<void> done;
-  while (done && out.size() < objects.size())
-    done = read_part(objects.subspan(out.size(), std::min(kAtOnce, objects.size() - out.size())), out);
-  despite_alarms_ = false;
-  heard_ = session_->watch().alarms(node_);
-  if (!done) return fail(done.error());
-  return out;
-}
-
-Result<void> ObjectSurvey::read_part(std::span<const ObjectAddress> objects,
-                                     std::vector<Result<Bytes>>& out) {
-  auto answers = ask(objects);
-  return take(answers, objects, out);
 }
 
 Result<bool> ObjectSurvey::is_enabled() { return is_any_axis_energised(*session_, node_); }
@@ -108,7 +91,7 @@ Result<void> ObjectSurvey::check_alive(const Error& silence) {
 
 Result<void> ObjectSurvey::check_alarms(ObjectAddress last) {
   const auto before = std::exchange(heard_, session_->watch().alarms(node_));
-  if (heard_ == before) return {};
+  if (heard_ == before || despite_alarms_) return {};
   const auto& known = session_->watch().emergencies(node_);
   const auto what = known.empty() ? std::string("an EMCY") : formatted("the EMCY {:04X}h", known.back().code);
   return fail(drive_error(

@@ -24,8 +24,10 @@ class ObjectSurvey {
   /// allows. Errc::timeout if the node does not answer a read of 1000h either, Errc::refused after an EMCY
   /// (it may be the answer to a request for an object that the node lacks), Errc::bus, Errc::interrupted.
   Result<std::vector<Result<Bytes>>> read(std::span<const ObjectAddress> objects);
-  /// The same, but goes on after an EMCY, and asks as well for what the node's family says is an alarm there.
-  Result<std::vector<Result<Bytes>>> read_despite_alarms(std::span<const ObjectAddress> objects);
+  /// From now on an EMCY ends nothing, and what the node's family says is an alarm there is asked for as
+  /// well.
+  void go_on_despite_alarms() { despite_alarms_ = true; }
+  bool goes_on_despite_alarms() const { return despite_alarms_; }
 
   /// A read that brings more bytes is given up: a node may send without end.
   void set_longest(std::size_t bytes) { longest_ = bytes; }
@@ -34,7 +36,6 @@ class ObjectSurvey {
   Result<bool> is_enabled();
 
  private:
-  Result<void> read_part(std::span<const ObjectAddress> objects, std::vector<Result<Bytes>>& out);
   std::vector<Result<Bytes>> ask(std::span<const ObjectAddress> objects);
   std::vector<Result<Bytes>> transfer_limited(std::span<const SdoRequest> requests);
   Result<void> take(std::vector<Result<Bytes>>& answers, std::span<const ObjectAddress> objects,

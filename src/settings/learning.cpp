@@ -96,8 +96,8 @@ class Learning {
       return fail(drive_error(Errc::refused, node_,
                               "an axis is enabled, or still reacts to a fault: nothing is read",
                               "`disable` it first; `status` shows the state"));
-    if (const auto found = find_axes(); !found) return found;
-    return allow_alarms();
+    if (const auto may = allow_alarms(); !may) return may;
+    return find_axes();
   }
 
   /// 1000h was answered before further axes are asked for.
@@ -120,6 +120,7 @@ class Learning {
 
   Result<void> allow_alarms() {
     if (!options_.despite_alarms) return {};
+    survey_->go_on_despite_alarms();
     const auto* known = session_->wary_of(node_);
     return desk_->confirm(
         known != nullptr
@@ -179,7 +180,7 @@ class Learning {
     const auto begun = resume_scan(*desk_, scan_file(file_), identity_, state);
     if (!begun) return fail(begun.error());
     const bool resumed = *begun;
-    session::ObjectScan scan(*session_, node_, *survey_, statuswords_, options_.despite_alarms, state);
+    session::ObjectScan scan(*session_, node_, *survey_, statuswords_, state);
     Result<void> kept;
     const auto done = scan.run([&] {
       if (state.done == 0) return kept;
@@ -210,10 +211,14 @@ class Learning {
          formatted("Made by servoctl by reading indexes {} of a drive.", ranges_text(state.ranges)),
          "Reading shows neither write access nor sign, limits or defaults: what can be read is ro where no "
          "standard says more. Where the manual says that an object can be written, change AccessType to rw."});
+    tell_alarms();
+    return Learned{"scan", std::move(text), ranges_text(state.ranges), resumed, state.refusals};
+  }
+
+  void tell_alarms() {
     if (session_->watch().alarms(node_) != alarms_)
       desk_->notices.push_back(formatted(
           "node {} sent EMCYs during the scan: it may be in fault now (`status`, `fault reset`)", node_));
-    return Learned{"scan", std::move(text), ranges_text(state.ranges), resumed, state.refusals};
   }
 
   Result<void> may_scan() {

@@ -365,6 +365,23 @@ TEST_F(LearningTest, TheReactionToAnAlarmOfTheScanIsAwaited) {
   }
 }
 
+TEST_F(LearningTest, ADriveNobodyKnowsRaisesOneAlarmAndIsReadOnOnlyIfThatIsWanted) {
+  show::Willing yes;
+  for (const bool despite : {false, true}) {
+    begin_anew();
+    desk = {};
+    desk.session = &*node->session;
+    desk.audience = &yes;
+    node->alarming = {{0x6841, 0}, {0x1021, 0}, {0x5E3B, 0}};
+    const auto done = learn_sheet(desk, 1, file, {.ranges = {{0x1000, 0x1030}}, .despite_alarms = despite});
+    EXPECT_EQ(done.has_value(), despite);
+    if (!despite) {
+      EXPECT_EQ(done.error().code, Errc::refused);
+      EXPECT_EQ(std::count(node->asked.begin(), node->asked.end(), ObjectAddress{0x7041, 0}), 0);
+    }
+  }
+}
+
 TEST_F(LearningTest, StandardObjectsOfAnotherSizeKeepSignAndAccess) {
   node->objects.values[{0x606C, 0}] = {1, 0};
   node->objects.values[{0x60FF, 0}] = {1, 0};
