@@ -1,7 +1,9 @@
+#include <algorithm>
 
 #include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "drive/family_mistakes.hpp"
 #include "drive/shared_profile.hpp"
 #include "show/drive_rules.hpp"
 
@@ -14,6 +16,33 @@ constexpr Parameter kDrivesParameters[] = {
     {.name = "family", .help = "show the rules of this family", .kind = Kind::family},
 };
 
+std::size_t errors_in(const drive::Family& family, std::span<const std::filesystem::path> folders) {
+  const auto found = drive::mistakes_of(family, folders);
+  return static_cast<std::size_t>(std::count_if(
+      found.begin(), found.end(), [](const drive::Mistake& mistake) { return mistake.breaks; }));
+}
+
+std::vector<report::Value> row_of(Context& context, const drive::Family& family) {
+  const auto rules = drive::load_rules(family);
+  const auto errors = errors_in(family, context.drive_folders);
+  if (!rules && rules.error().code == Errc::refused)
+    context.notices.push_back(formatted("{}; {}", rules.error().message, rules.error().hint));
+  else if (errors > 0)
+    context.notices.push_back(formatted("{0} is broken: {1} error{2}; `drives check {0}` lists them",
+                                        family.name, errors, errors == 1 ? "" : "s"));
+  const auto name = rules ? rules->name : std::string();
+  const auto name_zh = rules ? rules->name_zh : std::string();
+  const auto& shown = context.chinese && !name_zh.empty() ? name_zh : name;
+  return {family.name,
+          report::text_or_null(rules ? rules->vendor : std::string()),
+          errors > 0 ? report::Value("broken") : report::text_or_null(shown),
+          report::text_or_null(name),
+          report::text_or_null(name_zh),
+          family.stem.string() + ".*",
+          family.stem.string(),
+          errors};
+}
+
 Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
   if (arguments.has("family")) {
     const auto loaded = drive::shared_profile(arguments.text("family"), context.drive_folders);
@@ -22,6 +51,7 @@ Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
     for (const auto& warning : profile.warnings) context.notices.push_back(warning);
     return report::Value(show::rules_record(profile, context.chinese));
   }
+  const std::span<const std::filesystem::path> folders = context.drive_folders;
   report::Table table;
   table.columns = {{"family"},
                    {"vendor"},
@@ -29,23 +59,14 @@ Result<report::Value> run_drives(Context& context, const Arguments& arguments) {
                    {"name", "", report::Show::json},
                    {"name_zh", "", report::Show::json},
                    {"files_text", "files", report::Show::text},
-                   {"files", "", report::Show::json}};
-  for (const auto& family : drive::find_families(context.drive_folders)) {
-    const auto rules = drive::load_rules(family);
-    if (!rules && rules.error().code == Errc::refused)
-      context.notices.push_back(formatted("{}; {}", rules.error().message, rules.error().hint));
-    const auto name = rules ? rules->name : std::string();
-    const auto name_zh = rules ? rules->name_zh : std::string();
-    table.rows.push_back({family.name, report::text_or_null(rules ? rules->vendor : std::string()),
-                          report::text_or_null(context.chinese && !name_zh.empty() ? name_zh : name),
-                          report::text_or_null(name), report::text_or_null(name_zh),
-                          family.stem.string() + ".*", family.stem.string()});
-  }
+                   {"files", "", report::Show::json},
+                   {"errors", "", report::Show::json}};
+  for (const auto& family : drive::find_families(folders)) table.rows.push_back(row_of(context, family));
   if (table.rows.empty()) {
-    std::string folders;
+    std::string missing;
     for (const auto& folder : std::span<const std::filesystem::path>(context.drive_folders))
-      append(folders, folder.string());
-    return fail(Errc::file, "no drive data was found in " + folders, "set SERVOCTL_DRIVES to its folder");
+      append(missing, folder.string());
+    return fail(Errc::file, "no drive data was found in " + missing, "set SERVOCTL_DRIVES to its folder");
   }
   return report::Value(std::move(table));
 }
@@ -63,7 +84,7 @@ const Command kDrives{
     .summary = "List the drive families servoctl knows, or the rules of one",
     .details =
         "Put your own families into ~/.config/servoctl/drives or a folder in $SERVOCTL_DRIVES "
-        "(docs/drive-data.md).",
+        "(docs/drive-data.md). A family whose files have errors is listed as broken; `drives check` names the errors.",
     .parameters = kDrivesParameters,
     .examples = kDrivesExamples,
     .needs = Needs::nothing,

@@ -3,6 +3,7 @@
 #include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "drive/parameter_ids.hpp"
 #include "report/catalogue.hpp"
 #include "report/text_kinds.hpp"
 #include "show/object_records.hpp"

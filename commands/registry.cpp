@@ -104,6 +104,8 @@ extern const Command kMonitor;
 extern const Command kDecode;
 extern const Command kReplay;
 extern const Command kDrives;
+extern const Command kDrivesCheck;
+extern const Command kDrivesNew;
 extern const Command kEdsCheck;
 extern const Command kEdsVerify;
 extern const Command kEdsLearn;
@@ -221,6 +223,8 @@ constexpr Named kNamed[] = {
     {"decode", &commands::kDecode},
     {"replay", &commands::kReplay},
     {"drives", &commands::kDrives},
+    {"drives check", &commands::kDrivesCheck},
+    {"drives new", &commands::kDrivesNew},
     {"eds check", &commands::kEdsCheck},
     {"eds verify", &commands::kEdsVerify},
     {"eds learn", &commands::kEdsLearn},

@@ -5,6 +5,7 @@
 
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/text.hpp"
 
 namespace servoctl {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 /// Splits the text into records; knows nothing of columns.
 class Splitter {
  public:
-  explicit Splitter(std::string_view text) : text_(text) {
+  Splitter(std::string_view text, char separator) : text_(text), separator_(separator) {
     if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
   }
 
@@ -32,7 +33,7 @@ class Splitter {
       plain(cells.back());
       if (at_end()) return true;
       const char c = text_[at_++];
-      if (c == ',') {
+      if (c == separator_) {
         cells.emplace_back();
       } else if (c == '\n') {
         ++line_;
@@ -46,7 +47,7 @@ class Splitter {
  private:
   void plain(std::string& cell) {
     const auto begin = at_;
-    while (at_ < text_.size() && text_[at_] != ',' && text_[at_] != '\n' && text_[at_] != '\r') ++at_;
+    while (at_ < text_.size() && text_[at_] != separator_ && text_[at_] != '\n' && text_[at_] != '\r') ++at_;
     cell.append(text_, begin, at_ - begin);
   }
 
@@ -64,6 +65,7 @@ class Splitter {
   }
 
   std::string_view text_;
+  char separator_;
   std::size_t at_ = 0;
   std::uint32_t line_ = 1;
 };
@@ -102,13 +104,34 @@ std::size_t CsvTable::column(std::string_view name) const {
   return static_cast<std::size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
 }
 
-Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
+bool CsvTable::has_columns(std::span<const std::string_view> needed, std::string_view file,
+                           std::vector<Error>& errors) const {
+  bool all = true;
+  std::string there;
+  for (const auto& each : columns) append(there, formatted("'{}'", each));
+  for (const auto name : columns.empty() ? std::span<const std::string_view>() : needed) {
+    if (column(name) < columns.size()) continue;
+    errors.push_back(file_error(file, 1, formatted("column '{}' is missing", name),
+                                formatted("the columns are {}", there)));
+    all = false;
+  }
+  return all;
+}
+
+CsvTable read_csv(std::string_view text, std::string_view file, std::vector<Error>& errors, char separator,
+                  CsvRows rows) {
   CsvTable table;
-  Splitter splitter(text);
+  Splitter splitter(text, separator);
   std::vector<std::string> cells;
+  const auto wrong = [&](std::uint32_t line, std::string_view what) {
+    errors.push_back(file_error(file, line, what));
+  };
   while (!splitter.at_end()) {
     const auto line = splitter.line();
-    if (!splitter.next(cells)) return fail(file_error(file, line, "a quote is opened here and never closed"));
+    if (!splitter.next(cells)) {
+      wrong(line, "a quote is opened here and never closed");
+      break;
+    }
     if (cells.size() == 1 && cells.front().empty()) continue;
     take_apostrophes(cells);
     if (table.columns.empty()) {
@@ -116,19 +139,26 @@ Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
       auto sorted = cells;
       std::sort(sorted.begin(), sorted.end());
       const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
-      if (twice != sorted.end())
-        return fail(file_error(file, line, formatted("column '{}' appears twice", *twice)));
+      if (twice != sorted.end() && rows == CsvRows::exact)
+        wrong(line, formatted("column '{}' appears twice", *twice));
       continue;
     }
-    if (cells.size() != table.columns.size())
-      return fail(file_error(
-          file, line,
-          formatted("{} cells, but the header names {} columns", cells.size(), table.columns.size())));
+    if (cells.size() != table.columns.size() && rows == CsvRows::exact) {
+      wrong(line, formatted("{} cells, but the header names {} columns", cells.size(), table.columns.size()));
+      continue;
+    }
     table.rows.push_back({std::move(cells), line});
     cells.reserve(table.columns.size());
   }
-  if (table.columns.empty())
-    return fail(file_error(file, 1, "the file is empty; a line with column names is expected"));
+  if (table.columns.empty() && errors.empty())
+    wrong(1, "the file is empty; a line with column names is expected");
+  return table;
+}
+
+Result<CsvTable> parse_csv(std::string_view text, std::string_view file) {
+  std::vector<Error> errors;
+  auto table = read_csv(text, file, errors);
+  if (!errors.empty()) return fail(std::move(errors.front()));
   return table;
 }
 

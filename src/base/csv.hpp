@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,11 +22,24 @@ struct CsvTable {
 
   /// Position of the column, or columns.size() when there is none of this name.
   std::size_t column(std::string_view name) const;
+  /// Adds an error for each of these columns that is missing; false when there is one. An empty table has
+  /// none.
+  bool has_columns(std::span<const std::string_view> needed, std::string_view file,
+                   std::vector<Error>& errors) const;
 };
+
+/// Whether each record has a cell for every column, and each column a name of its own.
+enum class CsvRows : std::uint8_t { exact, any_length };
+
+/// Reads the whole text and adds to `errors` what is wrong in it: a record with too few or too many cells
+/// (which is left out), an unclosed quote (the text ends there), a column named twice. Each is Errc::file
+/// with its line. `file` is used in messages only.
+CsvTable read_csv(std::string_view text, std::string_view file, std::vector<Error>& errors,
+                  char separator = ',', CsvRows rows = CsvRows::exact);
 
 /// Reads the whole text; an apostrophe that csv_cell() would have put before a cell is no part of it. `file`
 /// is used in messages only. A record with too few or too many cells, an unclosed quote or a column named
-/// twice is an error of Errc::file with its line.
+/// twice is an error of Errc::file with its line; the first is returned.
 Result<CsvTable> parse_csv(std::string_view text, std::string_view file);
 
 /// A cell as parse_csv() reads it: in quotes where it holds a comma, a quote or a line break. What a

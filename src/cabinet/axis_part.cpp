@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "canopen/node_list.hpp"
 #include "drive/naming.hpp"
+#include "drive/parameter_ids.hpp"
 #include "drive/pdo_recipe_reader.hpp"
 
 namespace servoctl::cabinet {

@@ -187,6 +187,7 @@ class Shell {
     bool family_found = false;  ///< The line does not name it.
     bool changes = false;       ///< It writes to drives.
     bool family_guessed = false;
+    bool family_proven = false;  ///< By the identity of the drive.
     std::set<std::uint8_t> energised_before;
     std::string turn;  ///< As after --turn.
   };
@@ -195,6 +196,7 @@ class Shell {
     std::string family;
     bool guessed = false;
     std::string turn = {};
+    bool proven = false;  ///< By the identity of the drive.
     bool operator==(const FoundFamily&) const = default;
   };
 

@@ -141,6 +141,7 @@ void Shell::tell_place(const Run& run) {
 void Shell::tell_family(const Run& run) {
   const auto& settings = run.settings;
   const auto why = run.family_guessed    ? std::string("the identity of the drive fits it, a guess")
+                   : run.family_proven   ? "the identity of the drive proves it"
                    : run.family_found    ? "as it was said of this drive before"
                    : settings.of_cabinet ? "that of the axis in the cabinet file"
                                          : formatted("named by {}", name_of(settings.drive_from, "--drive"));

@@ -24,15 +24,23 @@ using session::Session;
 using show::KnownDrive;
 using show::KnownDriveFile;
 
+/// What an identity says of the family.
+struct Suggestion {
+  std::vector<std::string> families;
+  bool proven = false;  ///< There is one, its rules say that a match is certain, and no other fits.
+};
+
 /// The families that are for drives of many makers only where no other fits.
-std::vector<std::string> suggested(Session& session, Identity identity,
-                                   std::span<const drive::Family> families) {
+Suggestion suggested(Session& session, Identity identity, std::span<const drive::Family> families) {
   session::look_for_families(session, std::span(&identity, 1), families);
   const auto guesses = session::guess_families(identity, families);
   const bool own = std::any_of(guesses.begin(), guesses.end(), [](const auto& one) { return !one.generic; });
-  std::vector<std::string> out;
+  Suggestion out;
   for (const auto& guess : guesses)
-    if (!own || !guess.generic) out.push_back(guess.family);
+    if (!own || !guess.generic) out.families.push_back(guess.family);
+  out.proven = out.families.size() == 1 && std::any_of(guesses.begin(), guesses.end(), [](const auto& one) {
+                 return one.certain && !one.generic;
+               });
   return out;
 }
 
@@ -132,18 +140,19 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
                     said->family, said->time));
       found = families_.emplace(key, FoundFamily{said->family, false}).first;
     } else {
-      const auto fits = suggested(session, *identity, drive::find_families(options_.drive_folders));
+      const auto [fits, proven] = suggested(session, *identity, drive::find_families(options_.drive_folders));
       if (fits.empty()) return needs_family(*run.command, no_family_hint());
-      if (fits.size() > 1 || changes)
+      if (fits.size() > 1 || (changes && !proven))
         return needs_family(
             *run.command, formatted("the identity of node {} fits {} (a guess, not proof): if the nameplate "
                                     "agrees, add -d {}",
                                     node, one_of(fits), fits.front()));
       run.context.notices.push_back(
-          formatted("node {} is taken for {}, which its identity fits: a guess, not proof; what writes or "
-                    "moves needs -d {}",
-                    node, fits.front(), fits.front()));
-      found = families_.emplace(key, FoundFamily{fits.front(), true}).first;
+          proven ? formatted("node {} is a {}: its identity proves it", node, fits.front())
+                 : formatted("node {} is taken for {}, which its identity fits: a guess, not proof; what "
+                             "writes or moves needs -d {}",
+                             node, fits.front(), fits.front()));
+      found = families_.emplace(key, FoundFamily{fits.front(), !proven, {}, proven}).first;
     }
   }
   if (changes && found->second.guessed)
@@ -173,7 +182,7 @@ std::string Shell::family_by_identity(Session& session, std::uint8_t node) {
     if (known && *known && show::change_of((*known)->identity, *identity).empty() && is_own((*known)->family))
       return (*known)->family;
   }
-  const auto fits = suggested(session, *identity, drive::find_families(options_.drive_folders));
+  const auto fits = suggested(session, *identity, drive::find_families(options_.drive_folders)).families;
   return fits.size() == 1 && is_own(fits.front()) ? fits.front() : std::string();
 }
 
@@ -211,7 +220,9 @@ Result<void> Shell::find_family(Run& run, bool changes) {
       return fail(sure.error());
   run.settings.drive = cast.front().first;
   run.family_found = true;
-  run.family_guessed = families_.at(key_of(**opened, nodes->front())).guessed;
+  const auto& found = families_.at(key_of(**opened, nodes->front()));
+  run.family_guessed = found.guessed;
+  run.family_proven = found.proven;
   return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "drive/profile.hpp"
 #include "drive/scaling.hpp"
 
 namespace servoctl::drive {
@@ -13,6 +14,10 @@ bool is_unit_assumed(const Target& target) {
   return needed_measure(entry.unit, target.address) == Measure::increments_per_turn &&
          std::any_of(assumed.begin(), assumed.end(),
                      [](const od::Mark& mark) { return mark.field == "unit"; });
+}
+
+bool leaves_units_open(const Profile& profile) {
+  return profile.is_generic() || profile.stands_on(kGenericFamily);
 }
 
 }  // namespace servoctl::drive

@@ -8,4 +8,8 @@ namespace servoctl::drive {
 /// recommends, and nothing in the data says that this drive uses it: no number may be converted by it.
 bool is_unit_assumed(const Target& target);
 
+/// Whether such units are those of CiA 402 for any drive, and not of a family whose manual was read: they are
+/// left open unless the drive names its own.
+bool leaves_units_open(const Profile& profile);
+
 }  // namespace servoctl::drive

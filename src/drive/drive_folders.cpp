@@ -1,4 +1,4 @@
-// Where the data of the families stand, and which of them are trusted.
+// Where the data of the families stand, which of them are trusted, and whose parents they are.
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -7,11 +7,13 @@
 #include <system_error>
 #include <utility>
 
+#include "base/file.hpp"
 #include "base/format.hpp"
 #include "base/found_file.hpp"
 #include "base/text.hpp"
 #include "drive/family_files.hpp"
 #include "drive/profile.hpp"
+#include "drive/rules.hpp"
 
 namespace servoctl::drive {
 namespace fs = std::filesystem;
@@ -84,6 +86,13 @@ void find_in(const fs::path& folder, std::vector<Family>& out, std::vector<fs::p
   }
 }
 
+/// Nothing where there are none or they are not trusted: who loads the family says so.
+std::string text_of_rules(const Family& family) {
+  const fs::path file = family.stem.string() + ".toml";
+  if (!check_family_file(file)) return {};
+  return read_file(file).value_or(std::string());
+}
+
 }  // namespace
 
 std::vector<fs::path> drive_folders() {
@@ -120,6 +129,31 @@ const Family* find_family(std::span<const Family> families, std::string_view nam
   const auto found = std::find_if(families.begin(), families.end(),
                                   [&](const Family& family) { return equals_nocase(family.name, name); });
   return found == families.end() ? nullptr : &*found;
+}
+
+Result<void> check_parents(const Family& family, std::span<const fs::path> folders) {
+  const auto families = find_families(folders);
+  std::string chain = family.name;
+  std::string first;
+  std::vector<std::string> seen;
+  // A file that was named by its path may build on the family of the same name.
+  if (const auto* known = find_family(families, family.name); known == nullptr || known->stem == family.stem)
+    seen.push_back(family.name);
+  const auto* at = &family;
+  while (at != nullptr) {
+    const auto parent = lower(parent_of(text_of_rules(*at)));
+    if (parent.empty()) return {};
+    if (first.empty()) first = parent;
+    chain += " → " + parent;
+    if (std::find(seen.begin(), seen.end(), parent) != seen.end())
+      return fail(Errc::file,
+                  formatted("{}: parent = \"{}\": the parents form a loop: {}",
+                            formatted("{}.toml", family.stem.filename().string()), first, chain),
+                  "name a parent that does not descend from this family");
+    seen.push_back(parent);
+    at = find_family(families, parent);
+  }
+  return {};
 }
 
 Folders::operator std::span<const fs::path>() const {

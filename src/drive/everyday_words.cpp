@@ -49,23 +49,34 @@ std::vector<fs::path> word_files(const Profile& profile, std::span<const fs::pat
 
 }  // namespace
 
-Result<std::vector<EverydayWords>> parse_everyday_words(std::string_view csv, std::string_view file) {
-  const auto table = parse_csv(csv, file);
-  if (!table) return fail(table.error());
-  if (table->columns != std::vector<std::string>{"thing", "words", "manual"})
-    return fail(file_error(file, 1, "the columns are not thing,words,manual"));
+std::vector<EverydayWords> read_everyday_words(std::string_view csv, std::string_view file,
+                                               std::vector<Error>& errors) {
+  const auto table = read_csv(csv, file, errors);
   std::vector<EverydayWords> out;
-  for (const auto& row : table->rows) {
+  const auto wrong = [&](std::uint32_t line, std::string_view what) {
+    errors.push_back(file_error(file, line, what));
+  };
+  if (table.columns != std::vector<std::string>{"thing", "words", "manual"}) {
+    if (!table.columns.empty()) wrong(1, "the columns are not thing,words,manual");
+    return out;
+  }
+  for (const auto& row : table.rows) {
     EverydayWords words{std::string(trim(row.cells[0])), {}, row.cells[2] == "none"};
-    if (words.name.empty()) return fail(file_error(file, row.line, "'thing' is missing"));
-    if (!row.cells[2].empty() && !words.absent)
-      return fail(file_error(file, row.line, "'manual' is none, or empty"));
+    if (words.name.empty()) wrong(row.line, "'thing' is missing");
+    if (!row.cells[2].empty() && !words.absent) wrong(row.line, "'manual' is none, or empty");
     if (std::any_of(out.begin(), out.end(), [&](const auto& each) { return each.name == words.name; }))
-      return fail(file_error(file, row.line, formatted("'{}' stands twice", words.name)));
+      wrong(row.line, formatted("'{}' stands twice", words.name));
     for (const auto word : split(std::string_view(row.cells[1]), ';'))
       if (const auto bare = trim(word); !bare.empty()) words.words.emplace_back(bare);
     out.push_back(std::move(words));
   }
+  return out;
+}
+
+Result<std::vector<EverydayWords>> parse_everyday_words(std::string_view csv, std::string_view file) {
+  std::vector<Error> errors;
+  auto out = read_everyday_words(csv, file, errors);
+  if (!errors.empty()) return fail(std::move(errors.front()));
   return out;
 }
 

@@ -23,6 +23,9 @@ struct EverydayWords {
 /// Reads `<family>.words.csv` (docs/drive-data.md). Errc::file with file and line for an unknown column or
 /// cell, a thing without a name, one that stands twice.
 Result<std::vector<EverydayWords>> parse_everyday_words(std::string_view csv, std::string_view file);
+/// The same; adds everything that is wrong to `errors`.
+std::vector<EverydayWords> read_everyday_words(std::string_view csv, std::string_view file,
+                                               std::vector<Error>& errors);
 
 /// The words of the standard, with those that the family and its parents add. Errors as above.
 Result<std::vector<EverydayWords>> load_everyday_words(const Profile& profile,

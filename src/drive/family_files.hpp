@@ -1,10 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 
 #include "base/result.hpp"
 
 namespace servoctl::drive {
+
+struct Family;
+
+/// Errc::file, naming the key, where the parents of a family lead back to it or to one of them.
+Result<void> check_parents(const Family& family, std::span<const std::filesystem::path> folders);
 
 /// Whether a file of a family may be used. One in a folder that was only found (the user's own, or beside the
 /// program) and is not named in $SERVOCTL_DRIVES must not be another user's, or open to others: see

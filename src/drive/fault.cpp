@@ -6,6 +6,7 @@
 #include "base/csv.hpp"
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "od/table_row.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -14,9 +15,9 @@ constexpr std::array<std::string_view, 12> kColumns{"code",       "extra",   "pa
                                                     "resettable", "name",    "name_zh",      "check",
                                                     "check_zh",   "assumed", "contradicted", "line"};
 
-tl::unexpected<Error> bad_cell(std::string_view file, std::uint32_t line, std::string_view column,
-                               std::string_view cell, std::string_view expected) {
-  return fail(file_error(file, line, formatted("column {}: '{}' is not {}", column, cell, expected)));
+Error bad_cell(std::string_view file, std::uint32_t line, std::string_view column, std::string_view cell,
+               std::string_view expected) {
+  return file_error(file, line, formatted("column {}: '{}' is not {}", column, cell, expected));
 }
 
 std::optional<std::uint16_t> parse_code(std::string_view text) {
@@ -44,56 +45,68 @@ std::string_view name(Fault::Kind kind) {
 
 namespace {
 
-Result<Fault> parse_fault(const CsvTable& table, const CsvTable::Row& row, std::string_view file) {
+Fault read_fault(const CsvTable& table, const CsvTable::Row& row, std::string_view file,
+                 std::vector<Error>& errors) {
   const auto cell = [&](std::string_view column) -> std::string {
     const auto at = table.column(column);
     return at < row.cells.size() ? row.cells[at] : std::string();
   };
+  const auto refuse = [&](std::string_view column, std::string_view expected) {
+    errors.push_back(bad_cell(file, row.line, column, cell(column), expected));
+  };
+  const auto marks_in = [&](std::string_view column) {
+    auto parsed = od::parse_marks(cell(column));
+    if (!parsed) refuse(column, "a list such as code 1136;extra");
+    return parsed ? std::move(*parsed) : std::vector<od::Mark>();
+  };
   Fault fault;
   if (const auto text = cell("code"); !text.empty()) {
     fault.code = parse_code(text);
-    if (!fault.code) return bad_cell(file, row.line, "code", text, "a code of 16 bits");
+    if (!fault.code) refuse("code", "a code of 16 bits, such as 0x8130");
   }
-  const auto kind = parse_kind(cell("kind"));
-  if (!kind) return bad_cell(file, row.line, "kind", cell("kind"), "fault, warning or status");
-  fault.kind = *kind;
+  const auto kind_text = cell("kind");
+  const auto kind = kind_text.empty() ? Fault::Kind::fault : parse_kind(kind_text);
+  if (!kind) refuse("kind", "fault, warning or status");
+  fault.kind = kind.value_or(Fault::Kind::fault);
   if (const auto text = cell("resettable"); !text.empty()) {
-    if (text != "yes" && text != "no")
-      return bad_cell(file, row.line, "resettable", text, "yes, no or empty");
+    if (text != "yes" && text != "no") refuse("resettable", "yes, no or empty");
     fault.resettable = text == "yes";
   }
-  const auto manual_line = parse_integer(cell("line"));
-  if (!manual_line) return bad_cell(file, row.line, "line", cell("line"), "a line number");
-  fault.line = static_cast<std::uint32_t>(manual_line->magnitude);
+  const auto line = cell("line");
+  const auto manual_line = line.empty() ? std::optional<std::uint64_t>(0) : parse_digits(line, 10);
+  if (!manual_line) refuse("line", "a line number");
+  fault.line = static_cast<std::uint32_t>(manual_line.value_or(0));
   for (const auto& [column, text] :
        {std::pair("extra", &fault.extra), std::pair("panel", &fault.panel), std::pair("name", &fault.name),
         std::pair("name_zh", &fault.name_zh), std::pair("check", &fault.check),
         std::pair("check_zh", &fault.check_zh)})
     *text = cell(column);
-  for (const auto& [column, marks] :
-       {std::pair("assumed", &fault.doubts.assumed), std::pair("contradicted", &fault.doubts.contradicted)}) {
-    auto parsed = od::parse_marks(cell(column));
-    if (!parsed) return bad_cell(file, row.line, column, cell(column), "a list such as code 1136;extra");
-    *marks = std::move(*parsed);
-  }
-  if (fault.name.empty()) return bad_cell(file, row.line, "name", "", "a name");
+  fault.doubts.assumed = marks_in("assumed");
+  fault.doubts.contradicted = marks_in("contradicted");
+  if (fault.name.empty()) refuse("name", "a name");
   return fault;
 }
 
 }  // namespace
 
-Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view file) {
-  const auto table = parse_csv(csv, file);
-  if (!table) return fail(table.error());
-  for (const auto& column : table->columns)
-    if (std::find(kColumns.begin(), kColumns.end(), column) == kColumns.end())
-      return bad_cell(file, 1, column, column, "a column of a faults table (docs/drive-data.md)");
+std::vector<Fault> read_faults(std::string_view csv, std::string_view file, std::vector<Error>& errors) {
+  const auto table = read_csv(csv, file, errors);
+  (void)od::TableColumns::find(table, kColumns, file, errors);
   std::vector<Fault> faults;
-  for (const auto& row : table->rows) {
-    auto fault = parse_fault(*table, row, file);
-    if (!fault) return fail(fault.error());
-    faults.push_back(std::move(*fault));
+  constexpr std::string_view kNeeded[] = {"name"};
+  if (!table.has_columns(kNeeded, file, errors)) return faults;
+  for (const auto& row : table.rows) {
+    const auto before = errors.size();
+    auto fault = read_fault(table, row, file, errors);
+    if (errors.size() == before) faults.push_back(std::move(fault));
   }
+  return faults;
+}
+
+Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view file) {
+  std::vector<Error> errors;
+  auto faults = read_faults(csv, file, errors);
+  if (!errors.empty()) return fail(std::move(errors.front()));
   return faults;
 }
 

@@ -32,8 +32,11 @@ struct Fault {
 
 std::string_view name(Fault::Kind kind);  ///< `fault warning status`
 
-/// Reads `<family>.faults.csv`. Errc::file with file and line for a bad cell or an unknown column.
+/// Reads `<family>.faults.csv`; of its columns only `name` is needed. Errc::file with file and line for a bad
+/// cell or an unknown column: the first of them.
 Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view file);
+/// The same of all rows that are right; adds everything that is wrong to `errors`.
+std::vector<Fault> read_faults(std::string_view csv, std::string_view file, std::vector<Error>& errors);
 
 /// What the panel shows for an emergency, by the family's layout of the vendor bytes (`Er12-2`); empty when
 /// they do not tell.

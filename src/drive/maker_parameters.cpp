@@ -4,7 +4,7 @@
 #include <map>
 
 #include "base/text.hpp"
-#include "drive/profile.hpp"
+#include "drive/parameter_ids.hpp"
 
 namespace servoctl::drive {
 namespace {

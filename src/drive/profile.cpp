@@ -9,6 +9,7 @@
 #include "base/text.hpp"
 #include "drive/family_files.hpp"
 #include "drive/maker_parameters.hpp"
+#include "drive/parameter_ids.hpp"
 #include "drive/profile_sheet.hpp"
 #include "od/data_sheet.hpp"
 
@@ -29,6 +30,9 @@ Result<void> add_parameters(Profile& profile, const fs::path& path) {
   if (!text) return fail(text.error());
   auto parameters = od::parse_parameters(*text, path.string());
   if (!parameters) return fail(parameters.error());
+  std::vector<Error> same;
+  refuse_same_ids(*parameters, path.string(), same);
+  if (!same.empty()) return fail(std::move(same.front()));
   profile.parameters = std::move(*parameters);
   profile.made_of_dictionary = false;
   return {};
@@ -84,22 +88,19 @@ Result<std::string> read_family_file(const fs::path& path) {
   return read_file(path);
 }
 
-/// Parents of parents end here: a family that is its own ancestor would never.
-constexpr int kMostAncestors = 4;
-
 Result<Profile> load_family(std::string_view name, std::span<const fs::path> folders, int ancestors);
 
-Result<Profile> load_parent(const fs::path& path, std::string_view rules, std::span<const fs::path> folders,
+Result<Profile> load_parent(const Family& family, std::string_view rules, std::span<const fs::path> folders,
                             int ancestors) {
   const auto parent = parent_of(rules);
   if (parent.empty()) return Profile{};
-  if (ancestors == kMostAncestors)
-    return fail(Errc::file,
-                formatted("{}: its parents form a loop (parent = \"{}\")", path.string(), parent));
+  if (const auto ends = ancestors == 0 ? check_parents(family, folders) : Result<void>(); !ends)
+    return fail(ends.error());
   auto loaded = load_family(parent, folders, ancestors + 1);
   if (!loaded)
     return fail(loaded.error().code == Errc::refused ? Errc::refused : Errc::file,
-                formatted("{}: parent: {}", path.string(), loaded.error().message), loaded.error().hint);
+                formatted("{}: parent: {}", rules_file(family).string(), loaded.error().message),
+                loaded.error().hint);
   return loaded;
 }
 
@@ -109,9 +110,10 @@ Result<Profile> load_parts(const Family& family, std::span<const fs::path> folde
   const bool has_rules = fs::exists(rules, ignored);
   const auto text = has_rules ? read_family_file(rules) : Result<std::string>();
   if (!text) return fail(text.error());
-  auto parent = load_parent(rules, *text, folders, ancestors);
+  auto parent = load_parent(family, *text, folders, ancestors);
   if (!parent) return parent;
   auto profile = std::move(*parent);
+  if (!profile.family.empty()) profile.ancestors.insert(profile.ancestors.begin(), profile.family);
   profile.family = family.name;
   profile.warnings.clear();
   bool has_sheet = false;
@@ -177,23 +179,10 @@ bool names_a_file(std::string_view family) {
 
 bool Profile::is_generic() const { return rules.family.empty() || rules.family == kGenericFamily; }
 
-std::string canonical_id(std::string_view id) {
-  std::string out;
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  const auto is_alnum = [&](char c) { return is_digit(c) || (c >= 'a' && c <= 'z'); };
-  const auto text = lower(id);
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (c == '_' || c == '-') {
-      // Between two digits the separator says where one number ends: P3-5 is not P35.
-      if (!out.empty() && is_digit(out.back()) && i + 1 < text.size() && is_digit(text[i + 1])) out += '.';
-      continue;
-    }
-    const bool leading = out.empty() || !is_digit(out.back());
-    if (c == '0' && leading && i + 1 < text.size() && is_alnum(text[i + 1])) continue;
-    out += c;
-  }
-  return out;
+bool Profile::stands_on(std::string_view other) const {
+  return equals_nocase(family, other) ||
+         std::any_of(ancestors.begin(), ancestors.end(),
+                     [&](const auto& ancestor) { return equals_nocase(ancestor, other); });
 }
 
 void Profile::build_index() {

@@ -25,7 +25,8 @@ inline constexpr std::string_view kGenericFamily = "cia402";
 
 /// All that is known of one drive family: its dictionary, panel parameters, faults and rules.
 struct Profile {
-  std::string family;  ///< `gsd600`; the path for a file of the user's own.
+  std::string family;                  ///< `gsd600`; the path for a file of the user's own.
+  std::vector<std::string> ancestors;  ///< Its parent, the parent of that, and so on.
   Rules rules;
   od::Dictionary dictionary;
   std::vector<od::Parameter> parameters;
@@ -54,6 +55,9 @@ struct Profile {
   /// The rules are those of CiA 301 and 402 alone: what this drive does otherwise is not known.
   bool is_generic() const;
 
+  /// Whether it is this family or descends from it.
+  bool stands_on(std::string_view other) const;
+
   /// Builds the tables behind parameter(), and the parameters of a dictionary that comes without a table of
   /// them; called by load_profile().
   void build_index();
@@ -62,10 +66,6 @@ struct Profile {
   std::unordered_map<std::string, std::size_t> by_id_;
   std::unordered_map<ObjectAddress, std::size_t> by_object_;
 };
-
-/// The id without what people leave out: case, `_` and `-`, leading zeros of each number (`Pn0202` and
-/// `pn_202` are one).
-std::string canonical_id(std::string_view id);
 
 /// Where families are looked for, in this order: the folders of $SERVOCTL_DRIVES (separated by `:`), the
 /// user's own

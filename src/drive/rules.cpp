@@ -14,7 +14,8 @@ namespace {
 
 class RulesReader {
  public:
-  RulesReader(std::string_view file, Rules base) : file_(file), rules_(std::move(base)) {
+  RulesReader(std::string_view file, Rules base, std::vector<Error>& errors)
+      : file_(file), rules_(std::move(base)), errors_(&errors) {
     // What a family is called and how it is recognised is its own.
     rules_.family.clear();
     rules_.identity.clear();
@@ -23,91 +24,92 @@ class RulesReader {
     rules_.identity_looks.clear();
   }
 
-  Result<Rules> read(const toml::table& root) {
+  Rules read(const toml::table& root) {
     std::int64_t format = 0;
-    const auto done = TableReader(root, file_)
-                          .read({
-                              {"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
-                              {"family", into(rules_.family)},
-                              {"parent", into(rules_.parent)},
-                              {"vendor", into(rules_.vendor)},
-                              {"name", into(rules_.name)},
-                              {"name_zh", into(rules_.name_zh)},
-                              {"provenance", [&](const auto& n) { return provenance(n); }},
-                              {"identity", section(read_identity)},
-                              {"numbering", tables(rules_.numbering, read_numbering)},
-                              {"units", section(read_units)},
-                              {"sdo", section(read_sdo)},
-                              {"nmt", section(read_nmt)},
-                              {"pdo", section(read_pdo)},
-                              {"coe", section(read_coe)},
-                              {"modbus", section(read_modbus)},
-                              {"store", section(read_store)},
-                              {"restart", section(read_restart)},
-                              {"mirror", section(read_mirror)},
-                              {"statusword", section(read_statusword)},
-                              {"quick_stop", section(read_quick_stop)},
-                              {"motion", section(read_motion)},
-                              {"emergency", section(read_emergency)},
-                              {"fault", section(read_fault)},
-                              {"caution", tables(rules_.cautions, read_caution)},
-                              {"abort_codes", [&](const auto& n) { return abort_codes(n); }},
-                              {"assumed", into(rules_.assumed)},
-                              {"contradicted", [&](const auto& n) { return contradicted(n); }},
-                          });
-    if (inner_) return fail(*inner_);
-    if (!done) return fail(done.error());
-    if (format == 0 || rules_.family.empty())
-      return fail(Errc::file, formatted("{}: 'format' or 'family' is missing", file_),
-                  "begin the file with format = 1 and family = \"NAME\"");
+    const auto before = errors_->size();
+    (void)TableReader(root, file_, errors_)
+        .read({
+            {"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
+            {"family", into(rules_.family)},
+            {"parent", into(rules_.parent)},
+            {"vendor", into(rules_.vendor)},
+            {"name", into(rules_.name)},
+            {"name_zh", into(rules_.name_zh)},
+            {"provenance", [&](const auto& n) { return provenance(n); }},
+            {"identity", section(read_identity)},
+            {"numbering", tables(rules_.numbering, read_numbering)},
+            {"units", section(read_units)},
+            {"sdo", section(read_sdo)},
+            {"nmt", section(read_nmt)},
+            {"pdo", section(read_pdo)},
+            {"coe", section(read_coe)},
+            {"modbus", section(read_modbus)},
+            {"store", section(read_store)},
+            {"restart", section(read_restart)},
+            {"mirror", section(read_mirror)},
+            {"statusword", section(read_statusword)},
+            {"quick_stop", section(read_quick_stop)},
+            {"motion", section(read_motion)},
+            {"emergency", section(read_emergency)},
+            {"fault", section(read_fault)},
+            {"caution", tables(rules_.cautions, read_caution)},
+            {"abort_codes", [&](const auto& n) { return abort_codes(n); }},
+            {"assumed", into(rules_.assumed)},
+            {"contradicted", [&](const auto& n) { return contradicted(n); }},
+        });
+    const bool misses = root.get("format") == nullptr || rules_.family.empty();
+    if (misses && errors_->size() == before)
+      errors_->push_back(make_error(Errc::file, formatted("{}: 'format' or 'family' is missing", file_),
+                                    "begin the file with format = 1 and family = \"NAME\""));
     return std::move(rules_);
   }
 
  private:
   using Handler = TableReader::Handler;
 
-  /// Remembers the error of a sub-table: with its own line it goes before "of the wrong kind".
-  bool note(const Result<void>& done) {
-    if (!done && !inner_) inner_ = done.error();
-    return done.has_value();
-  }
-
+  /// What is wrong inside of a section goes into the list of errors, with its own line.
   Handler section(Result<void> (*parse)(const TableReader&, Rules&)) {
-    return [this, parse](const toml::node& node) {
-      const auto* inside = node.as_table();
-      return inside != nullptr && note(parse(TableReader(*inside, file_), rules_));
-    };
+    return {[this, parse](const toml::node& node) {
+              const auto* inside = node.as_table();
+              if (inside != nullptr) (void)parse(TableReader(*inside, file_, errors_), rules_);
+              return inside != nullptr;
+            },
+            "it as a section: [NAME]"};
   }
 
   /// Kept by nobody: provenance_of() reads it when it is asked for.
   bool provenance(const toml::node& node) {
     const auto* inside = node.as_table();
     if (inside == nullptr) return false;
-    const auto read = read_provenance(TableReader(*inside, file_));
-    return note(read ? Result<void>() : fail(read.error()));
+    (void)read_provenance(TableReader(*inside, file_, errors_));
+    return true;
   }
 
   /// A list of tables, `[[name]]`; replaces the parent's.
   template <class T>
   Handler tables(std::vector<T>& out, Result<void> (*parse)(const TableReader&, T&)) {
-    return [this, &out, parse](const toml::node& node) {
+    const auto read = [this, &out, parse](const toml::node& node) {
       const auto* array = node.as_array();
       if (array == nullptr) return false;
       out.clear();
       for (const auto& element : *array) {
         const auto* inside = element.as_table();
-        if (inside == nullptr || !note(parse(TableReader(*inside, file_), out.emplace_back()))) return false;
+        if (inside == nullptr) return false;
+        (void)parse(TableReader(*inside, file_, errors_), out.emplace_back());
       }
       return true;
     };
+    return {read, "it as a list of sections: [[NAME]]"};
   }
 
   /// A string is Chinese, as the manuals are; a table says both.
   bool abort_text(const toml::node& node, AbortText& out) {
     if (get(node, out.text_zh)) return true;
     const auto* both = node.as_table();
-    return both != nullptr &&
-           note(TableReader(*both, file_).read({{"text", into(out.text)}, {"text_zh", into(out.text_zh)}}));
+    if (both != nullptr)
+      (void)TableReader(*both, file_, errors_)
+          .read({{"text", into(out.text)}, {"text_zh", into(out.text_zh)}});
+    return both != nullptr;
   }
 
   bool contradicted(const toml::node& node) {
@@ -137,7 +139,7 @@ class RulesReader {
 
   std::string_view file_;
   Rules rules_;
-  std::optional<Error> inner_;
+  std::vector<Error>* errors_;
 };
 
 }  // namespace
@@ -178,15 +180,23 @@ bool MotionRules::is_actuated(std::uint32_t inputs_word, unsigned bit) const {
          (std::find(inputs_active_low.begin(), inputs_active_low.end(), bit) == inputs_active_low.end());
 }
 
-Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules base) {
-  if (const auto flat = check_toml_depth(toml, file); !flat) return fail(flat.error());
-  const auto parsed = toml::parse(toml, file);
-  if (!parsed) {
-    const auto& problem = parsed.error();
-    const auto at = problem.source().begin;
-    return fail(file_error(file, at.line, at.column, problem.description()));
+Rules read_rules(std::string_view toml, std::string_view file, Rules base, std::vector<Error>& errors) {
+  if (const auto flat = check_toml_depth(toml, file); !flat) {
+    errors.push_back(flat.error());
+    return base;
   }
-  return RulesReader(file, std::move(base)).read(parsed.table());
+  const auto parsed = toml::parse(toml, file);
+  if (parsed) return RulesReader(file, std::move(base), errors).read(parsed.table());
+  const auto at = parsed.error().source().begin;
+  errors.push_back(file_error(file, at.line, at.column, parsed.error().description()));
+  return base;
+}
+
+Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules base) {
+  std::vector<Error> errors;
+  auto out = read_rules(toml, file, std::move(base), errors);
+  if (!errors.empty()) return fail(std::move(errors.front()));
+  return out;
 }
 
 std::string parent_of(std::string_view toml) {

@@ -305,6 +305,9 @@ struct Rules {
 /// Reads a rules file on top of `base`, the rules of its parent. Errc::file with file and line for a syntax
 /// error, an unknown key or a value of the wrong kind: a rule that is misspelt would silently not hold.
 Result<Rules> parse_rules(std::string_view toml, std::string_view file, Rules base = {});
+/// The same of all that is right; adds everything that is wrong to `errors`. Of a text that is no TOML only
+/// the first fault of its form is known.
+Rules read_rules(std::string_view toml, std::string_view file, Rules base, std::vector<Error>& errors);
 
 /// The name of the parent in a rules file, without reading the rest; empty when it has none or is no TOML.
 std::string parent_of(std::string_view toml);

@@ -78,11 +78,18 @@ bool get(const toml::node& node, NmtRules::Restart& out) {
 }
 
 template <class T>
-TableReader::Handler list_into(std::vector<T>& out) {
-  return [&out](const toml::node& node) {
-    return get_list(node, out, [](const toml::node& n, T& o) { return get(n, o); });
-  };
+TableReader::Handler list_into(std::vector<T>& out, std::string_view form) {
+  return {[&out](const toml::node& node) {
+            return get_list(node, out, [](const toml::node& n, T& o) { return get(n, o); });
+          },
+          form};
 }
+
+constexpr std::string_view kMarks =
+    R"([{ object = "0x1018:01", value = 0x1234 }], or text = "NAME"; mask and soft are optional)";
+constexpr std::string_view kSettings = R"([{ name = "P1-01", value = 1 }])";
+constexpr std::string_view kConditionForm = R"({ object = "0x2001:00", value = 1 })";
+constexpr std::string_view kWhenForm = R"("always", "invalid" or "not operational")";
 
 /// A table whose keys are numbers, `{ 3 = 12 }`.
 template <class T>
@@ -97,7 +104,7 @@ bool read_numbered(const toml::node& node, std::map<std::int64_t, T>& out) {
 }
 
 TableReader::Handler condition_into(std::optional<Condition>& out) {
-  return [&out](const toml::node& node) { return get(node, out.emplace()); };
+  return {[&out](const toml::node& node) { return get(node, out.emplace()); }, kConditionForm};
 }
 
 }  // namespace
@@ -105,7 +112,7 @@ TableReader::Handler condition_into(std::optional<Condition>& out) {
 Result<void> read_identity(const TableReader& reader, Rules& rules) {
   return reader.read({{"certain", into(rules.identity_certain)},
                       {"telling", into(rules.identity_telling)},
-                      {"match", list_into(rules.identity)},
+                      {"match", list_into(rules.identity, kMarks)},
                       {"looks", into(rules.identity_looks)}});
 }
 
@@ -133,11 +140,13 @@ Result<void> read_nmt(const TableReader& reader, Rules& rules) {
   auto& out = rules.nmt;
   return reader.read({{"node_id", into(out.node_id)},
                       {"bitrate", into(out.bitrate)},
-                      {"address_after", [&](const toml::node& node) { return get(node, out.address_after); }},
+                      {"address_after",
+                       {[&](const toml::node& node) { return get(node, out.address_after); },
+                        R"("power cycle", "reset node" or "reset communication")"}},
                       {"autostart", into(out.autostart)},
                       {"guarding_alarm", into(out.guarding_alarm)},
                       {"max_nodes", into(out.max_nodes)},
-                      {"needs", list_into(out.needs)},
+                      {"needs", list_into(out.needs, kSettings)},
                       {"lost_alarms", into(out.lost_alarms)},
                       {"disables_outside_operational", into(out.disables_outside_operational)}});
 }
@@ -159,8 +168,8 @@ Result<void> read_pdo(const TableReader& reader, Rules& rules) {
     return get_list(node, out.presets, [](const toml::node& n, PdoPreset& o) { return drive::get(n, o); });
   };
   return reader.read({{"cob_id_bits", into(out.cob_id_bits)},
-                      {"parameters", [&](const auto& n) { return get(n, out.parameters); }},
-                      {"mapping", [&](const auto& n) { return get(n, out.mapping); }},
+                      {"parameters", {[&](const auto& n) { return get(n, out.parameters); }, kWhenForm}},
+                      {"mapping", {[&](const auto& n) { return get(n, out.mapping); }, kWhenForm}},
                       {"inhibit_while_valid", into(out.inhibit_while_valid)},
                       {"disable_by_count", into(out.disable_by_count)},
                       {"clears_entries", into(out.clears_entries)},
@@ -189,8 +198,8 @@ Result<void> read_coe(const TableReader& reader, Rules& rules) {
 
 Result<void> read_store(const TableReader& reader, Rules& rules) {
   auto& out = rules.store;
-  return reader.read({{"store", list_into(out.store)},
-                      {"restore", list_into(out.restore)},
+  return reader.read({{"store", list_into(out.store, kSettings)},
+                      {"restore", list_into(out.restore, kSettings)},
                       {"objects", into(out.objects)},
                       {"flash_switch", into(out.flash_switch)},
                       {"to_ram", into(out.to_ram)},
@@ -223,7 +232,7 @@ Result<void> read_statusword(const TableReader& reader, Rules& rules) {
                       {"fault_reaction_active", word(DriveState::fault_reaction_active)},
                       {"fault", word(DriveState::fault)},
                       {"remote_bit", into(rules.remote_bit)},
-                      {"mode_bits", list_into(rules.mode_bits)}});
+                      {"mode_bits", list_into(rules.mode_bits, "[{ mode = 1, disabled = 0x0400 }]")}});
 }
 
 Result<void> read_quick_stop(const TableReader& reader, Rules& rules) {
@@ -267,7 +276,8 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
        {"zero_ramp", into(out.zero_ramp)},
        {"speed_limit", into(out.speed_limit)},
        {"setpoints", into(out.setpoints)},
-       {"without_controlword", list_into(out.without_controlword)}});
+       {"without_controlword",
+        list_into(out.without_controlword, R"([{ name = "P1-01", end = "P1-01", value = 0 }])")}});
 }
 
 Result<void> read_emergency(const TableReader& reader, Rules& rules) {
@@ -286,7 +296,7 @@ Result<void> read_emergency(const TableReader& reader, Rules& rules) {
 Result<void> read_fault(const TableReader& reader, Rules& rules) {
   auto& out = rules.fault;
   return reader.read({{"reset_enabled_by", condition_into(out.reset_enabled_by)},
-                      {"reset", list_into(out.reset)},
+                      {"reset", list_into(out.reset, kSettings)},
                       {"by_controlword", into(out.by_controlword)},
                       {"alarm", into(out.alarm)},
                       {"ramp", into(out.ramp)},

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -113,58 +114,113 @@ inline std::string value_in_words(const toml::node& node) {
   return node.is_table() ? "a table" : node.is_array() ? "this list" : "a date or time";
 }
 
-/// Reads one table key by key; remembers the first thing that is wrong.
+/// How a value that get() reads into `T` is written; empty where nobody could tell in a few words.
+template <class T>
+constexpr std::string_view form_of() {
+  if constexpr (std::is_same_v<T, bool>) return "true or false";
+  if constexpr (std::is_same_v<T, std::string>) return "a text in quotes";
+  if constexpr (std::is_same_v<T, ObjectAddress>) return R"(an object: "0x6041:00")";
+  if constexpr (std::is_same_v<T, std::int8_t>) return "a whole number from -128 to 127";
+  if constexpr (std::is_same_v<T, std::uint8_t>) return "a whole number from 0 to 255";
+  if constexpr (std::is_same_v<T, std::uint16_t>) return "a whole number from 0 to 0xFFFF";
+  if constexpr (std::is_same_v<T, std::uint32_t>) return "a whole number from 0 to 0xFFFFFFFF";
+  if constexpr (std::is_same_v<T, std::int64_t>) return "a whole number";
+  if constexpr (std::is_same_v<T, std::vector<std::string>>) return R"(a list of texts: ["P1-01", "P1-02"])";
+  if constexpr (std::is_same_v<T, std::vector<ObjectAddress>>) return R"(a list of objects: ["0x6041:00"])";
+  if constexpr (std::is_same_v<T, std::vector<std::int64_t>> || std::is_same_v<T, std::vector<std::uint16_t>>)
+    return "a list of whole numbers: [1, 2]";
+  return {};
+}
+
+/// Reads one table key by key. Without a list for errors it stops at the first that is wrong; with one it
+/// adds all of them to it.
 class TableReader {
  public:
-  TableReader(const toml::table& table, std::string_view file) : table_(&table), file_(file) {}
+  TableReader(const toml::table& table, std::string_view file, std::vector<Error>* errors = nullptr)
+      : table_(&table), file_(file), errors_(errors) {}
 
-  using Handler = std::function<bool(const toml::node&)>;
+  /// Answers whether it could use the value of a key, and knows how that is written.
+  class Handler {
+   public:
+    template <class Read>
+    requires(!std::is_same_v<std::remove_cvref_t<Read>, Handler>)
+        // NOLINTNEXTLINE(google-explicit-constructor,bugprone-forwarding-reference-overload): stands in
+        // lists.
+        Handler(Read&& read, std::string_view form = {})
+        : read_(std::forward<Read>(read)), form_(form) {}
+    bool operator()(const toml::node& node) const { return read_(node); }
+    std::string_view form() const { return form_; }
+
+   private:
+    std::function<bool(const toml::node&)> read_;
+    std::string_view form_;
+  };
   using Handlers = std::map<std::string_view, Handler>;
-  /// How the value of a key is written, for the hint where it is not.
+  /// How the value of a key is written, for the hint where it is not; before what its handler says.
   using Forms = std::map<std::string_view, std::string_view>;
 
-  /// Every key must be one of these; a handler answers whether it could use the value.
+  /// Every key must be one of these; a handler answers whether it could use the value. The first error.
   Result<void> read(const Handlers& handlers, const Forms& forms = {}) const {
+    Result<void> out;
     for (const auto& [key, node] : *table_) {
       const auto handler = handlers.find(std::string_view(key.str()));
-      if (handler == handlers.end()) return unknown(key, handlers);
-      if (handler->second(node)) continue;
-      auto error = fail_at(node, formatted("'{}' cannot be {}", key.str(), value_in_words(node))).value();
-      if (const auto form = forms.find(handler->first); form != forms.end())
-        error.hint = formatted("write {}", form->second);
-      return fail(std::move(error));
+      auto done = handler == handlers.end() ? Result<void>(unknown(key, handlers))
+                                            : read_key(key, node, handler->second, forms);
+      if (out && !done) out = std::move(done);
+      if (!out && errors_ == nullptr) return out;
     }
-    return {};
+    return out;
   }
 
-  tl::unexpected<Error> fail_at(const toml::node& node, const std::string& what) const {
+  tl::unexpected<Error> fail_at(const toml::node& node, const std::string& what,
+                                std::string hint = {}) const {
     const auto at = node.source().begin;
-    return fail(file_error(file_, at.line, at.column, what));
+    return noted(file_error(file_, at.line, at.column, what), std::move(hint));
   }
 
   std::string_view file() const { return file_; }
 
  private:
-  static constexpr std::size_t kMostOffered = 16;
+  static constexpr std::size_t kMostOffered = 30;
+
+  Result<void> read_key(const toml::key& key, const toml::node& node, const Handler& handler,
+                        const Forms& forms) const {
+    if (handler(node)) return {};
+    const auto given = forms.find(std::string_view(key.str()));
+    const auto form = given == forms.end() ? handler.form() : given->second;
+    return fail_at(node, formatted("'{}' cannot be {}", key.str(), value_in_words(node)),
+                   form.empty() ? std::string() : formatted("write {}", form));
+  }
 
   tl::unexpected<Error> unknown(const toml::key& key, const Handlers& handlers) const {
     const auto at = key.source().begin;
-    auto error = file_error(file_, at.line, at.column, formatted("unknown key '{}'", key.str()));
     std::vector<std::string> known;
     for (const auto& handler : handlers) known.emplace_back(handler.first);
-    error.hint = did_you_mean(key.str(), known);
-    if (error.hint.empty() && known.size() <= kMostOffered) error.hint = "write one of " + one_of(known);
+    auto hint = did_you_mean(key.str(), known);
+    if (hint.empty() && known.size() <= kMostOffered) hint = "write one of " + one_of(known);
+    return noted(file_error(file_, at.line, at.column, formatted("unknown key '{}'", key.str())),
+                 std::move(hint));
+  }
+
+  tl::unexpected<Error> noted(Error error, std::string hint) const {
+    error.hint = std::move(hint);
+    if (errors_ != nullptr) errors_->push_back(error);
     return fail(std::move(error));
   }
 
   const toml::table* table_;
   std::string_view file_;
+  std::vector<Error>* errors_;
 };
 
 /// A handler that reads the value into `out`.
 template <class T>
 TableReader::Handler into(T& out) {
-  return [&out](const toml::node& node) { return get(node, out); };
+  return {[&out](const toml::node& node) { return get(node, out); }, form_of<T>()};
+}
+template <class T>
+TableReader::Handler into(std::optional<T>& out) {
+  return {[&out](const toml::node& node) { return get(node, out); }, form_of<T>()};
 }
 
 }  // namespace servoctl::drive

@@ -67,6 +67,10 @@ bool is_source_line(std::string_view text);
 Result<std::vector<Topic>> parse_topics(std::string_view toml, std::string_view file,
                                         std::string_view family);
 
+/// The same of all topics that are right; adds everything that is wrong to `errors`.
+std::vector<Topic> read_topics(std::string_view toml, std::string_view file, std::string_view family,
+                               std::vector<Error>& errors);
+
 /// The same, of each topic its kind, name, object and value, and whether it has a picture: what decides which
 /// of two takes the place of the other. The rest may be missing and is not checked.
 Result<std::vector<Topic>> parse_topic_heads(std::string_view toml, std::string_view file,

@@ -20,18 +20,18 @@ constexpr std::array<std::string_view, 15> kTopicKinds{"wiring", "connector", "c
 
 class TopicsReader {
  public:
-  TopicsReader(std::string_view file, std::string_view family) : file_(file), family_(family) {}
+  TopicsReader(std::string_view file, std::string_view family, std::vector<Error>& errors)
+      : file_(file), family_(family), errors_(&errors) {}
 
-  Result<std::vector<Topic>> read(const toml::table& root) {
+  std::vector<Topic> read(const toml::table& root) {
     std::int64_t format = 0;
-    const auto done = TableReader(root, file_)
-                          .read({{"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
-                                 {"topic", [&](const auto& n) { return topics(n); }},
-                                 {"words_zh", [&](const auto& n) { return words(n); }}});
-    if (inner_) return fail(*inner_);
-    if (!done) return fail(done.error());
-    if (format == 0)
-      return fail(Errc::file, formatted("{}: 'format' is missing", file_), "begin the file with format = 1");
+    (void)TableReader(root, file_, errors_)
+        .read({{"format", [&](const auto& n) { return get_int(n, format) && format == 1; }},
+               {"topic", [&](const auto& n) { return topics(n); }},
+               {"words_zh", [&](const auto& n) { return words(n); }}});
+    if (root.get("format") == nullptr && errors_->empty())
+      errors_->push_back(make_error(Errc::file, formatted("{}: 'format' is missing", file_),
+                                    "begin the file with format = 1"));
     for (auto& topic : topics_) give_words(topic);
     return std::move(topics_);
   }
@@ -63,18 +63,13 @@ class TopicsReader {
         topic.words_zh.push_back(word);
   }
 
-  /// Remembers the first error of what stands inside: with its own line it goes before "of the wrong kind".
-  bool note(const Result<void>& done) {
-    if (!done && !inner_) inner_ = done.error();
-    return done.has_value();
-  }
-
   bool topics(const toml::node& node) {
     const auto* array = node.as_array();
     if (array == nullptr) return false;
     for (const auto& element : *array) {
       const auto* table = element.as_table();
-      if (table == nullptr || !note(topic(*table))) return false;
+      if (table == nullptr) return false;
+      (void)topic(*table);
     }
     return true;
   }
@@ -82,7 +77,7 @@ class TopicsReader {
   Result<void> topic(const toml::table& table) {
     Topic out;
     out.family = family_;
-    const TableReader reader(table, file_);
+    const TableReader reader(table, file_, errors_);
     // Each row is held against them, wherever they stand.
     if (const auto* columns = table.get("columns")) (void)drive::get(*columns, out.columns);
     const auto source = [](std::string& line) {
@@ -130,13 +125,14 @@ class TopicsReader {
     if (array == nullptr) return false;
     for (const auto& element : *array) {
       const auto* table = element.as_table();
-      if (table == nullptr || !note(row(*table, out.columns.size(), out.rows.emplace_back()))) return false;
+      if (table == nullptr) return false;
+      (void)row(*table, out.columns.size(), out.rows.emplace_back());
     }
     return true;
   }
 
   Result<void> row(const toml::table& table, std::size_t columns, TopicRow& out) const {
-    const TableReader reader(table, file_);
+    const TableReader reader(table, file_, errors_);
     const auto line = [&](const toml::node& n) {
       return drive::get(n, out.line) && is_source_line(out.line);
     };
@@ -157,7 +153,7 @@ class TopicsReader {
   }
 
   Result<void> check(const toml::table& table, const Topic& topic) {
-    const TableReader reader(table, file_);
+    const TableReader reader(table, file_, errors_);
     const auto wrong = [&](const std::string& what) {
       return reader.fail_at(table, topic.name.empty() ? what : formatted("topic '{}': {}", topic.name, what));
     };
@@ -189,7 +185,7 @@ class TopicsReader {
   std::vector<Topic> topics_;
   Words words_;
   std::set<std::string> names_;
-  std::optional<Error> inner_;
+  std::vector<Error>* errors_;
 };
 
 }  // namespace
@@ -209,16 +205,25 @@ bool is_source_line(std::string_view text) {
   return true;
 }
 
+std::vector<Topic> read_topics(std::string_view toml, std::string_view file, std::string_view family,
+                               std::vector<Error>& errors) {
+  if (const auto flat = check_toml_depth(toml, file); !flat) {
+    errors.push_back(flat.error());
+    return {};
+  }
+  const auto parsed = toml::parse(toml, file);
+  if (parsed) return TopicsReader(file, family, errors).read(parsed.table());
+  const auto at = parsed.error().source().begin;
+  errors.push_back(file_error(file, at.line, at.column, parsed.error().description()));
+  return {};
+}
+
 Result<std::vector<Topic>> parse_topics(std::string_view toml, std::string_view file,
                                         std::string_view family) {
-  if (const auto flat = check_toml_depth(toml, file); !flat) return fail(flat.error());
-  const auto parsed = toml::parse(toml, file);
-  if (!parsed) {
-    const auto& problem = parsed.error();
-    const auto at = problem.source().begin;
-    return fail(file_error(file, at.line, at.column, problem.description()));
-  }
-  return TopicsReader(file, family).read(parsed.table());
+  std::vector<Error> errors;
+  auto out = read_topics(toml, file, family, errors);
+  if (!errors.empty()) return fail(std::move(errors.front()));
+  return out;
 }
 
 }  // namespace servoctl::drive

@@ -92,16 +92,23 @@ void read_row(TableRow& row, Dictionary& dictionary) {
 
 }  // namespace
 
-Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_view file) {
-  const auto table = parse_csv(csv, file);
-  if (!table) return fail(table.error());
-  const auto columns = TableColumns::find(*table, kColumns, file);
-  if (!columns) return fail(columns.error());
-  for (const auto& cells : table->rows) {
-    TableRow row(cells, *columns, kColumns, file);
+void annotate(Dictionary& dictionary, std::string_view csv, std::string_view file,
+              std::vector<Error>& errors) {
+  const auto table = read_csv(csv, file, errors);
+  const auto columns = TableColumns::find(table, kColumns, file, errors);
+  constexpr std::string_view kNeeded[] = {"object"};
+  if (!table.has_columns(kNeeded, file, errors)) return;
+  for (const auto& cells : table.rows) {
+    TableRow row(cells, columns, kColumns, file);
     read_row(row, dictionary);
-    if (row.error()) return fail(*row.error());
+    errors.insert(errors.end(), row.errors().begin(), row.errors().end());
   }
+}
+
+Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_view file) {
+  std::vector<Error> errors;
+  annotate(dictionary, csv, file, errors);
+  if (!errors.empty()) return fail(std::move(errors.front()));
   return {};
 }
 

@@ -39,6 +39,10 @@ constexpr auto kColumns = std::to_array<std::string_view>(
      "min",   "max",     "effect",       "enum",   "enum_zh", "name",  "name_zh",  "group",
      "flags", "assumed", "contradicted", "note",   "note_zh", "line"});
 
+constexpr std::array<std::string_view, 4> kNeeded{"id", "type", "access", "name"};
+constexpr std::string_view kTypes =
+    "bool, i8, i16, i24, i32, i64, u8, u16, u24, u32, u64, f32, f64, string, bytes, domain or time";
+
 std::optional<Access> parse_access(std::string_view text) {
   for (const auto access : {Access::ro, Access::rw, Access::wo, Access::constant})
     if (name(access) == text) return access;
@@ -73,10 +77,9 @@ Parameter read_row(TableRow& row) {
   out.id = std::string(row.cell(kId));
   if (out.id.empty()) row.refuse("a parameter without id");
   out.object = row.object(kObject);
-  if (const auto type = parse_data_type(row.cell(kType)))
-    out.type = *type;
-  else
-    row.refuse(kType, "a data type");
+  const auto type = parse_data_type(row.cell(kType));
+  out.type = type.value_or(out.type);
+  if (!type) row.refuse(kType, formatted("a data type: {}", kTypes));
   if (const auto access = parse_access(row.cell(kAccess)))
     out.access = *access;
   else
@@ -84,7 +87,7 @@ Parameter read_row(TableRow& row) {
   out.unit = std::string(row.cell(kUnit));
   out.scale = row.scale(kScale);
   out.encoding = row.encoding(kEncoding);
-  read_limits(row, out);
+  if (type) read_limits(row, out);
   out.effect = row.effect(kEffect);
   out.labels = row.labels(kEnum, kEnumZh);
   out.name = std::string(row.cell(kName));
@@ -101,26 +104,33 @@ Parameter read_row(TableRow& row) {
 
 }  // namespace
 
-Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::string_view file) {
-  const auto table = parse_csv(csv, file);
-  if (!table) return fail(table.error());
-  const auto columns = TableColumns::find(*table, kColumns, file);
-  if (!columns) return fail(columns.error());
+std::vector<Parameter> read_parameters(std::string_view csv, std::string_view file,
+                                       std::vector<Error>& errors) {
+  const auto table = read_csv(csv, file, errors);
+  const auto columns = TableColumns::find(table, kColumns, file, errors);
   std::vector<Parameter> out;
-  out.reserve(table->rows.size());
+  if (!table.has_columns(kNeeded, file, errors)) return out;
+  out.reserve(table.rows.size());
   std::unordered_set<std::string> ids;
   std::unordered_set<ObjectAddress> objects;
-  for (const auto& cells : table->rows) {
-    TableRow row(cells, *columns, kColumns, file);
+  for (const auto& cells : table.rows) {
+    TableRow row(cells, columns, kColumns, file);
     auto parameter = read_row(row);
     parameter.file_line = cells.line;
     if (!ids.insert(lower(parameter.id)).second) row.refuse(formatted("{} appears twice", parameter.id));
     if (parameter.object && !objects.insert(*parameter.object).second)
       row.refuse(formatted("{}: object {} belongs to another parameter as well", parameter.id,
                            to_string(*parameter.object)));
-    if (row.error()) return fail(*row.error());
-    out.push_back(std::move(parameter));
+    errors.insert(errors.end(), row.errors().begin(), row.errors().end());
+    if (row.errors().empty()) out.push_back(std::move(parameter));
   }
+  return out;
+}
+
+Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::string_view file) {
+  std::vector<Error> errors;
+  auto out = read_parameters(csv, file, errors);
+  if (!errors.empty()) return fail(std::move(errors.front()));
   return out;
 }
 

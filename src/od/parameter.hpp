@@ -41,12 +41,20 @@ struct Parameter {
 };
 
 /// Reads a table of panel parameters. Errc::file with file and line for an unknown column, a bad cell, a
-/// value that does not fit its type, min above max, an id or object that stands twice, an unknown flag.
+/// value that does not fit its type, min above max, an id or object that stands twice, an unknown flag: the
+/// first of them.
 Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::string_view file);
+
+/// The same of all rows that are right; adds everything that is wrong to `errors`.
+std::vector<Parameter> read_parameters(std::string_view csv, std::string_view file,
+                                       std::vector<Error>& errors);
 
 /// Merges `<family>.objects.csv` into the dictionary: unit, scale, effect, labels, Chinese name, PDO
 /// direction, flags; a line without a sub-index has the Chinese name of an object of several entries.
-/// Errc::file with file and line for a bad cell or an object the dictionary does not have.
+/// Adds Errc::file with file and line for each bad cell and each object the dictionary does not have.
+void annotate(Dictionary& dictionary, std::string_view csv, std::string_view file,
+              std::vector<Error>& errors);
+/// The same; the first of these errors.
 Result<void> annotate(Dictionary& dictionary, std::string_view csv, std::string_view file);
 
 }  // namespace servoctl::od

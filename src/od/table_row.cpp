@@ -25,12 +25,16 @@ std::optional<std::vector<std::pair<std::int64_t, std::string>>> parse_labels(st
 
 }  // namespace
 
-Result<TableColumns> TableColumns::find(const CsvTable& table, std::span<const std::string_view> known,
-                                        std::string_view file) {
+TableColumns TableColumns::find(const CsvTable& table, std::span<const std::string_view> known,
+                                std::string_view file, std::vector<Error>& errors) {
+  const std::vector<std::string> names(known.begin(), known.end());
+  std::string quoted;
+  for (const auto name : known) append(quoted, formatted("'{}'", name));
   for (const auto& column : table.columns) {
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
-    return fail(file_error(file, 1, formatted("column '{}' is unknown", column),
-                           did_you_mean(column, std::vector<std::string>(known.begin(), known.end()))));
+    auto hint = did_you_mean(column, names);
+    if (hint.empty()) hint = "write one of " + quoted;
+    errors.push_back(file_error(file, 1, formatted("column '{}' is unknown", column), std::move(hint)));
   }
   TableColumns out;
   for (const auto name : known) out.places_.push_back(table.column(name));
@@ -46,13 +50,7 @@ void TableRow::refuse(std::size_t column, std::string_view expected) {
   refuse(formatted("column {}: '{}' is not {}", names_[column], cell(column), expected));
 }
 
-void TableRow::refuse(std::string what) {
-  if (error_) return;
-  error_.emplace();
-  error_->code = Errc::file;
-  error_->line = row_->line;
-  error_->message = formatted("{}:{}: {}", file_, row_->line, what);
-}
+void TableRow::refuse(std::string what) { errors_.push_back(file_error(file_, row_->line, what)); }
 
 std::optional<ObjectAddress> TableRow::object(std::size_t column) {
   const auto text = cell(column);

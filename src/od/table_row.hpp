@@ -17,16 +17,16 @@ namespace servoctl::od {
 /// The columns of a table, found by name once; cells of a row are then taken by their place.
 class TableColumns {
  public:
-  /// Errc::file when the table has a column that is not in `known`.
-  static Result<TableColumns> find(const CsvTable& table, std::span<const std::string_view> known,
-                                   std::string_view file);
+  /// Adds an error of Errc::file for each column of the table that is not in `known`.
+  static TableColumns find(const CsvTable& table, std::span<const std::string_view> known,
+                           std::string_view file, std::vector<Error>& errors);
   std::size_t place(std::size_t known_index) const { return places_[known_index]; }
 
  private:
   std::vector<std::size_t> places_;
 };
 
-/// Reads the cells of one row; remembers the first that is wrong.
+/// Reads the cells of one row; remembers all that is wrong.
 class TableRow {
  public:
   TableRow(const CsvTable::Row& row, const TableColumns& columns, std::span<const std::string_view> names,
@@ -50,14 +50,14 @@ class TableRow {
   void refuse(std::size_t column, std::string_view expected);
   /// Notes anything else that is wrong in the row.
   void refuse(std::string what);
-  const std::optional<Error>& error() const { return error_; }
+  const std::vector<Error>& errors() const { return errors_; }
 
  private:
   const CsvTable::Row* row_;
   const TableColumns* columns_;
   std::span<const std::string_view> names_;
   std::string_view file_;
-  std::optional<Error> error_;
+  std::vector<Error> errors_;
 };
 
 }  // namespace servoctl::od

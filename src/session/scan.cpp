@@ -170,6 +170,10 @@ std::vector<Guess> guess_families(const Identity& identity, std::span<const driv
     const bool generic = fits_as_generic(identity, rules);
     if (generic || may_be(identity, rules)) out.push_back({family.name, rules.identity_certain, generic});
   }
+  // Two that fit: neither is proven.
+  const auto own = std::count_if(out.begin(), out.end(), [](const Guess& guess) { return !guess.generic; });
+  if (own > 1)
+    for (auto& guess : out) guess.certain = false;
   const auto rank = [](const Guess& guess) { return guess.certain ? 0 : guess.generic ? 2 : 1; };
   std::stable_sort(out.begin(), out.end(), [&](const Guess& a, const Guess& b) { return rank(a) < rank(b); });
   return out;

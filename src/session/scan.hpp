@@ -34,7 +34,7 @@ std::string warning_of_details(std::span<const Identity> identities, std::span<c
 /// A family whose identity rule fits a node, or whose own objects it has.
 struct Guess {
   std::string family;
-  bool certain = false;
+  bool certain = false;  ///< Its rules say that a match proves it, and no other family fits.
   bool generic = false;  ///< For drives of many makers.
 };
 

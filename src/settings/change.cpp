@@ -178,7 +178,7 @@ Error with_password_hint(const show::Desk& desk, const Change& change, const Wri
 report::List change_row(const Change& change, const Result<session::Written>& written, const Value& kept,
                         const show::Desk& desk) {
   show::Reading reading{change.node, change.target, change.type, change.data, change.bridge};
-  if (desk.profile != nullptr && desk.profile->is_generic()) show::leave_units_open(reading);
+  if (desk.profile != nullptr && drive::leaves_units_open(*desk.profile)) show::leave_units_open(reading);
   const auto decoded = show::decode_value(reading, change.data);
   const auto effect = drive::meaning(change.target, change.node).effect;
   const auto name = desk.chinese ? change.target.label_zh() : change.target.label();

@@ -82,7 +82,7 @@ std::string watched_text(ObjectAddress object, ByteSpan bytes) {
 std::map<std::uint8_t, session::DriveUnits> own_units(Desk& desk, std::span<const Reading> readings) {
   std::map<std::uint8_t, session::DriveUnits> out;
   const auto* profile = desk.profile != nullptr ? desk.profile : desk.standard;
-  if (profile == nullptr || !profile->is_generic() || desk.session == nullptr) return out;
+  if (profile == nullptr || !drive::leaves_units_open(*profile) || desk.session == nullptr) return out;
   for (const auto& reading : readings)
     if (reading.bytes && drive::is_unit_assumed(reading.target) && out.count(reading.node) == 0)
       out.emplace(reading.node, session::DriveUnits(*desk.session, *profile, reading.node));

@@ -12,6 +12,7 @@
 #include "canopen/error_control.hpp"
 #include "canopen/lss.hpp"
 #include "canopen/nmt.hpp"
+#include "drive/assumed_unit.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/word_bits.hpp"
 #include "report/told.hpp"
@@ -288,7 +289,8 @@ void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Targ
   auto data = *step.data;
   const auto size = show::size_of(reading);
   if (size != 0 && size < 4 && data.size() == 4 && load_le(data) >> (size * 8 - 1) == 0) data.resize(size);
-  if ((family == nullptr || family->is_generic()) && target.entry != nullptr) show::leave_units_open(reading);
+  if ((family == nullptr || drive::leaves_units_open(*family)) && target.entry != nullptr)
+    show::leave_units_open(reading);
   const auto value = show::decode_value(reading, data);
   out_.text += " = " + value.text;
   // The mode that was heard tells more than the value alone.

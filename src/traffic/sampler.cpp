@@ -45,7 +45,7 @@ void add_bridges(show::Desk& desk, std::vector<Channel>& channels, std::optional
 /// Of a drive whose data only assume units: those that it names.
 void add_own_units(show::Desk& desk, std::vector<Channel>& channels) {
   const auto* profile = desk.profile != nullptr ? desk.profile : desk.standard;
-  if (profile == nullptr || !profile->is_generic()) return;
+  if (profile == nullptr || !drive::leaves_units_open(*profile)) return;
   std::map<std::uint8_t, session::DriveUnits> asked;
   for (auto& channel : channels) {
     if (!drive::is_unit_assumed(channel.target)) continue;

@@ -121,7 +121,7 @@ REASONS = {
     "bus status": KERNEL, "bus up": KERNEL, "bus down": KERNEL, "bus detect": KERNEL,
     "explain": QUICK, "objects": QUICK, "param list": QUICK, "param search": QUICK, "param explain": QUICK,
     "cabinet check": QUICK, "cabinet diff": QUICK, "fault list": QUICK, "decode": QUICK, "drives": QUICK, "help": QUICK,
-    "man": QUICK, "completion": QUICK, "eds check": QUICK,
+    "drives check": QUICK, "drives new": QUICK, "man": QUICK, "completion": QUICK, "eds check": QUICK,
     "state init": RING, "state preop": RING, "state safeop": UNTIL_ENDED, "state op": UNTIL_ENDED,
     "sync once": "one frame", "sync stop": "waits for nobody", "sim": UNTIL_ENDED, "gateway": UNTIL_ENDED,
 }

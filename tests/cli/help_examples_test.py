@@ -75,6 +75,9 @@ FILES = {
     "load.toml": '[bus.main]\nurl = "sim:sv2@2,sv2@3"\n' + AXES.format("sv2", LOAD),
     "monday.toml": '[bus.main]\nurl = "sim:gsd600@2,gsd600@3"\n' + AXES.format("gsd600", GAIN),
     "cell/cabinet.toml": '[bus.main]\nurl = "can0"\n' + AXES.format("gsd600", GAIN),
+    "drives/mine.toml": 'format = 1\nfamily = "mine"\nparent = "gsd600"\n',
+    "params.csv": "No.,Name,Index,Sub\nP1,Position loop gain 1,2001h,3\n",
+    "faults.csv": "code,name\n2310h,Overcurrent\n",
     "nodes.csv": "node,new\n1,11\n2,12\n",
     "setup.servoctl": "set NODE=1\ndrive gsd600\nuse ${NODE}\nparam set Pn0214 45Hz\nread 0x6041\n",
 }

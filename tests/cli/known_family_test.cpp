@@ -75,6 +75,75 @@ TEST_F(KnownFamily, AGuessThatWasTakenForReadsIsNoneForWritesInTheSameSession) {
   EXPECT_EQ(LineRunner(shell).run("param set Pn0202 30Hz -n 1"), 0) << all();
 }
 
+constexpr std::string_view kSheetOfOwn =
+    "[MandatoryObjects]\nSupportedObjects=2\n1=0x1000\n2=0x1018\n[OptionalObjects]\nSupportedObjects=4\n"
+    "1=0x6040\n2=0x6041\n3=0x606C\n4=0x6081\n[ManufacturerObjects]\nSupportedObjects=1\n1=0x2001\n"
+    "[1000]\nParameterName=Type\nObjectType=7\nDataType=7\nAccessType=ro\nDefaultValue=0x00020192\n"
+    "[1018]\nParameterName=Identity\nObjectType=9\nSubNumber=2\n"
+    "[1018sub0]\nParameterName=n\nObjectType=7\nDataType=5\nAccessType=ro\nDefaultValue=1\n"
+    "[1018sub1]\nParameterName=v\nObjectType=7\nDataType=7\nAccessType=ro\nDefaultValue=0x1234\n"
+    "[6040]\nParameterName=Controlword\nObjectType=7\nDataType=6\nAccessType=rw\n"
+    "[6041]\nParameterName=Statusword\nObjectType=7\nDataType=6\nAccessType=ro\n"
+    "[606C]\nParameterName=Velocity\nObjectType=7\nDataType=4\nAccessType=ro\n"
+    "[6081]\nParameterName=Speed\nObjectType=7\nDataType=7\nAccessType=rw\n"
+    "[2001]\nParameterName=Gain\nObjectType=7\nDataType=6\nAccessType=rw\nDefaultValue=4\n";
+
+TEST_F(KnownFamily, AFamilyThatItsIdentityProvesIsNoGuess) {
+  fs::create_directories(folder / "drives");
+  const auto family = [&](const std::string& name, std::string_view certain) {
+    std::ofstream(folder / "drives" / (name + ".toml"))
+        << "format = 1\nfamily = \"" << name << "\"\nparent = \"cia402\"\n[identity]\ncertain = " << certain
+        << "\nmatch = [{ object = \"0x1018:01\", value = 0x1234 }]\n";
+    std::ofstream(folder / "drives" / (name + ".eds")) << kSheetOfOwn;
+  };
+  family("mine", "true");
+  options.drive_folders = {folder / "drives", fs::path(source_dir()) / "eds"};
+  options.defaults.bus = "sim:mine@1";
+  EXPECT_EQ(run("read 0x2001 -n 1"), 0) << all();
+  EXPECT_EQ(run("param set 0x2001 5 -n 1"), 0) << all();
+  EXPECT_TRUE(says("node 1 is a mine: its identity proves it")) << all();
+  EXPECT_FALSE(says("guess")) << all();
+  EXPECT_EQ(files(), 0U) << "nobody said it";
+  EXPECT_EQ(run("scan"), 0);
+  EXPECT_FALSE(says("mine?")) << all();
+  family("other", "false");
+  EXPECT_EQ(run("param set 0x2001 5 -n 1"), 2) << "two that fit prove nothing: " << all();
+  EXPECT_EQ(run("scan"), 0);
+  EXPECT_TRUE(says("mine? or other?")) << all();
+}
+
+TEST_F(KnownFamily, AFamilyIsNotContradictedByThoseItDescendsFrom) {
+  fs::create_directories(folder / "drives");
+  std::ofstream(folder / "drives/mine.toml")
+      << "format = 1\nfamily = \"mine\"\nparent = \"cia402\"\n[identity]\ncertain = true\n"
+         "match = [{ object = \"0x1018:01\", value = 0x1234 }]\n";
+  std::ofstream(folder / "drives/mine.eds") << kSheetOfOwn;
+  std::ofstream(folder / "drives/child.toml") << "format = 1\nfamily = \"child\"\nparent = \"mine\"\n";
+  std::ofstream(folder / "drives/grandchild.toml")
+      << "format = 1\nfamily = \"grandchild\"\nparent = \"child\"\n";
+  options.drive_folders = {folder / "drives", fs::path(source_dir()) / "eds"};
+  options.defaults.bus = "sim:mine@1";
+  for (const auto* family : {"child", "grandchild"}) {
+    EXPECT_EQ(run(std::string("write 0x2001 5 -n 1 -d ") + family), 0) << all();
+    for (const auto* line : {"read 0x606C -n 1 -d ", "write 0x6081 5 -n 1 -d "}) {
+      EXPECT_EQ(run(std::string(line) + family), 0) << all();
+      EXPECT_FALSE(says("inc/s")) << "CiA 402 alone has it: " << all();
+    }
+  }
+}
+
+TEST_F(KnownFamily, AFamilyOnCia402ShowsNoUnitThatNobodyStated) {
+  fs::create_directories(folder / "drives");
+  std::ofstream(folder / "drives/mine.toml") << "format = 1\nfamily = \"mine\"\nparent = \"cia402\"\n";
+  std::ofstream(folder / "drives/mine.eds") << kSheetOfOwn;
+  options.drive_folders = {folder / "drives", fs::path(source_dir()) / "eds"};
+  options.defaults.bus = "sim:mine@1";
+  for (const auto& family : {std::string("mine"), (folder / "drives/mine.eds").string()}) {
+    EXPECT_EQ(run("read 0x606C -n 1 -d " + family), 0) << all();
+    EXPECT_FALSE(says("inc/s")) << all();
+  }
+}
+
 TEST_F(KnownFamily, AFamilyThatTheDriveContradictsIsToldAndNotRemembered) {
   EXPECT_EQ(run("param get P0.03 -n 1 -d da200"), 0) << all();
   EXPECT_TRUE(says("notice: node 1: not a da200: ")) << all();

@@ -113,6 +113,8 @@ inline const std::map<std::string, std::string> kSampleLines{
     {"decode", "decode DIR/recording.log"},
     {"replay", "replay DIR/recording.log --speed 100 -n 1 -y"},
     {"drives", "drives"},
+    {"drives check", "drives check gsd600"},
+    {"drives new", "drives new p22 --from EDS --dry-run"},
     {"cabinet check", "cabinet check tests/cli/data/cabinet.toml"},
     {"cabinet init", "cabinet init DIR/made.toml"},
     {"cabinet show", "cabinet show --cabinet DIR/cabinet.toml"},

@@ -9,6 +9,7 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "drive/naming.hpp"
+#include "drive/parameter_ids.hpp"
 #include "drive/quantity.hpp"
 #include "od/eds.hpp"
 #include "tests/source_dir.hpp"

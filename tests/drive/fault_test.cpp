@@ -33,7 +33,8 @@ void expect_refused(std::string_view row, std::string_view message) {
 }
 
 TEST(Faults, WithABadCellAreRefusedWithLineAndColumn) {
-  expect_refused("0x18130,,,fault,,N,,,,,1\n", "f.csv:2: column code: '0x18130' is not a code of 16 bits");
+  expect_refused("0x18130,,,fault,,N,,,,,1\n",
+                 "f.csv:2: column code: '0x18130' is not a code of 16 bits, such as 0x8130");
   expect_refused("0x8130,,,oops,,N,,,,,1\n", "f.csv:2: column kind: 'oops' is not fault, warning or status");
   expect_refused("0x8130,,,fault,maybe,N,,,,,1\n",
                  "f.csv:2: column resettable: 'maybe' is not yes, no or empty");

@@ -1,4 +1,5 @@
 #include "drive/naming.hpp"
+#include "drive/parameter_ids.hpp"
 
 #include <gtest/gtest.h>
 

@@ -23,6 +23,11 @@ OTHERS = 'src/report/not_for_people.po'
 CHINESE_SOURCES = {
     'src/can/log_column_names.cpp': 'headings that are recognised',
     'src/can/log_fields.cpp': 'words that are recognised',
+    'src/drive/foreign_faults.cpp': 'headings that are recognised',
+    'src/drive/foreign_heading.cpp': 'cells that say nothing',
+    'src/drive/foreign_parameter_headings.cpp': 'headings that are recognised',
+    'src/drive/foreign_cells.cpp': 'words and marks that are recognised',
+    'src/drive/foreign_words.cpp': 'words that are recognised',
     'src/drive/cia402.cpp': 'names of states, in both languages as the data of the families are',
     'src/od/esi_entry.cpp': 'notes of entries made from a file, in both languages as those of the data are',
     'src/od/esi_pdos.cpp': 'notes and names of entries made from a file, likewise',

@@ -69,7 +69,10 @@ TEST(Parameters, AreReadWhole) {
 TEST(Parameters, WithABadCellAreRefusedWithFileLineAndColumn) {
   expect_refused("X,0x20G0:1,u8,rw,,,,,,,,,N,,,,,,,1\n",
                  "p.csv:2: column object: '0x20G0:1' is not an object such as 0x2000:01");
-  expect_refused("X,,u9,rw,,,,,,,,,N,,,,,,,1\n", "p.csv:2: column type: 'u9' is not a data type");
+  expect_refused(
+      "X,,u9,rw,,,,,,,,,N,,,,,,,1\n",
+      "p.csv:2: column type: 'u9' is not a data type: bool, i8, i16, i24, i32, i64, u8, u16, u24, u32, u64, f32, f64, "
+      "string, bytes, domain or time");
   expect_refused("X,,u8,rx,,,,,,,,,N,,,,,,,1\n", "p.csv:2: column access: 'rx' is not ro, rw, wo or const");
   expect_refused("X,,u8,rw,,0,,,,,,,N,,,,,,,1\n",
                  "p.csv:2: column scale: '0' is not a number other than zero");
@@ -144,7 +147,10 @@ TEST(Parameters, HaveLabelsWithANumberAndAText) {
 TEST(Parameters, AreRefusedWithTheirFirstFault) {
   const auto p = parse_parameters("id,type,access,name,line\n\nX,u9,rx,,y\n", "p.csv");
   ASSERT_FALSE(p);
-  EXPECT_EQ(p.error().message, "p.csv:3: column type: 'u9' is not a data type");
+  EXPECT_EQ(
+      p.error().message,
+      "p.csv:3: column type: 'u9' is not a data type: bool, i8, i16, i24, i32, i64, u8, u16, u24, u32, u64, f32, f64, "
+      "string, bytes, domain or time");
   EXPECT_EQ(p.error().line, 3U);
 }
 

@@ -109,8 +109,8 @@ LEFT_OUT = {
     "state init": "EtherCAT", "state preop": "EtherCAT", "state safeop": "EtherCAT", "state op": "EtherCAT",
     "sync stop": "stops what a line of the prompt began",
     **{path: "uses no bus" for path in ("explain", "objects", "param list", "param search", "param explain", "cabinet check", "cabinet show",
-                                        "cabinet diff", "fault list", "units forget", "decode", "drives", "eds check", "help", "man",
-                                        "completion")},
+                                        "cabinet diff", "fault list", "units forget", "decode", "drives", "drives check", "drives new",
+                                        "eds check", "help", "man", "completion")},
 }
 # Those that are over before anything can happen: they send a frame and wait for none, or for one that comes at once.
 AT_ONCE = {"nmt start", "nmt stop", "nmt preop", "nmt reset", "nmt reset-comm", "sync once", "replay", "lss scan", "lss inquire", "lss select", "lss set-node",

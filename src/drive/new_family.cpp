@@ -1,0 +1,120 @@
+#include "drive/new_family.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <system_error>
+
+#include "base/file.hpp"
+#include "base/format.hpp"
+#include "base/text.hpp"
+#include "drive/family_mistakes.hpp"
+
+namespace servoctl::drive {
+namespace fs = std::filesystem;
+namespace {
+
+tl::unexpected<Error> cannot_make(const fs::path& folder, int reason) {
+  return fail(Errc::file,
+              formatted("cannot write {}: {}", folder.string(), std::generic_category().message(reason)),
+              "choose an existing folder you may write to");
+}
+
+/// A folder that is gone again unless it was moved to its place.
+class DraftFolder {
+ public:
+  explicit DraftFolder(const fs::path& beside, const std::string& name)
+      : path_((beside / ("." + name + ".XXXXXX")).string()) {
+    if (::mkdtemp(path_.data()) == nullptr) {
+      reason_ = errno;
+      path_.clear();
+    }
+  }
+  ~DraftFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  DraftFolder(const DraftFolder&) = delete;
+  DraftFolder& operator=(const DraftFolder&) = delete;
+
+  int reason() const { return reason_; }
+  fs::path path() const { return path_; }
+
+  /// Never onto what is there. 0, or the reason.
+  int move_to(const fs::path& place) {
+    constexpr unsigned kNoReplace = 1;  // RENAME_NOREPLACE of renameat2(2).
+    if (::renameat2(AT_FDCWD, path_.c_str(), AT_FDCWD, place.c_str(), kNoReplace) != 0) {
+      // File systems that do not know the flag: rename() replaces an empty folder at most.
+      if (errno != EINVAL || ::rename(path_.c_str(), place.c_str()) != 0) return errno;
+    }
+    path_.clear();
+    return 0;
+  }
+
+ private:
+  std::string path_;
+  int reason_ = 0;
+};
+
+Result<void> check_draft(const NewFamily& family, const fs::path& draft, std::span<const fs::path> folders) {
+  std::string all;
+  std::size_t count = 0;
+  for (const auto& mistake : mistakes_of({family.name, draft / family.name}, folders)) {
+    if (!mistake.breaks) continue;
+    append(all, mistake.message, "; ");
+    ++count;
+  }
+  if (count == 0) return {};
+  return fail(Errc::file, formatted("nothing was written: {}", all), "correct the data sheet or the tables");
+}
+
+}  // namespace
+
+Result<void> check_family_name(std::string_view name) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  // Where a family stands these are subcommands, the drive itself, all families, or a kind of bus.
+  constexpr std::string_view kTaken[] = {"online", "check", "new", "all", "local", "sim"};
+  const bool taken = std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
+  const bool begins = !name.empty() && name.front() >= 'a' && name.front() <= 'z';
+  if (begins && std::all_of(name.begin(), name.end(), fits) && !taken) return {};
+  if (taken)
+    return fail(Errc::usage, formatted("'{}' cannot be the name of a family", name),
+                "the word means something else in commands: choose another name, such as p10");
+  return fail(Errc::usage, formatted("'{}' cannot be the name of a family", name),
+              "lower case letters, digits, _ and -, beginning with a letter: p10, lxd7-can");
+}
+
+Result<fs::path> own_families_folder() {
+  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
+    return fs::path(config) / "servoctl/drives";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    return fs::path(home) / ".config/servoctl/drives";
+  return fail(Errc::usage, "there is no folder for your own families", "set HOME or XDG_CONFIG_HOME");
+}
+
+Result<fs::path> write_family(const NewFamily& family, const fs::path& folder,
+                              std::span<const fs::path> folders) {
+  const auto place = folder / family.name;
+  std::error_code error;
+  if (fs::exists(place, error))
+    return fail(Errc::usage, formatted("{} exists", place.string()), "choose another name");
+  fs::create_directories(folder, error);
+  if (error) return cannot_make(folder, error.value());
+  // Not in the folder of the families: no other command finds half a family there.
+  DraftFolder draft(folder.parent_path(), family.name);
+  if (draft.path().empty()) return cannot_make(folder.parent_path(), draft.reason());
+  for (const auto& [name, content] : family.files)
+    if (const auto written = write_file_atomically(draft.path() / name, content); !written)
+      return fail(written.error());
+  if (const auto sound = check_draft(family, draft.path(), folders); !sound) return fail(sound.error());
+  if (const int reason = draft.move_to(place); reason != 0) return cannot_make(place, reason);
+  return place;
+}
+
+}  // namespace servoctl::drive
