@@ -1,17 +1,13 @@
 #include <cmath>
-#include <map>
-#include <set>
 #include <utility>
 #include <vector>
 
 #include "base/format.hpp"
 #include "base/number.hpp"
 #include "can/error_frame.hpp"
-#include "canopen/sdo_frame.hpp"
 #include "command/command.hpp"
 #include "command/duration_option.hpp"
 #include "command/frame_filter.hpp"
-#include "drive/standard_objects.hpp"
 #include "session/can_network.hpp"
 #include "session/hearing.hpp"
 #include "session/open_bus.hpp"
@@ -19,6 +15,7 @@
 #include "session/process_values.hpp"
 #include "show/notice.hpp"
 #include "traffic/bus_load.hpp"
+#include "traffic/heard_masters.hpp"
 #include "traffic/listening.hpp"
 
 namespace servoctl::commands {
@@ -76,28 +73,6 @@ bool is_loss(const NodeEvent& event) {
   const auto* gone = std::get_if<NodeEvent::Gone>(&event.what);
   return gone != nullptr && gone->sign == NodeEvent::Gone::Sign::heartbeat;
 }
-
-/// Whose heartbeat is consumed, as writes to 1016h tell. A master that ends takes itself out of its drives
-/// first.
-class HeardConsumers {
- public:
-  void on_frame(const can::Frame& frame) {
-    const auto write = canopen::sdo_write_request(frame);
-    if (!write || write->object.index != objects::kConsumerHeartbeatIndex || frame.size != 8) return;
-    const auto producer = static_cast<std::uint8_t>(frame.data[6] & 0x7FU);
-    const bool on = (frame.data[4] | frame.data[5]) != 0 && producer != 0;
-    auto& entry = entries_[{write->node, write->object.sub}];
-    if (entry != 0) left_.insert(entry);
-    entry = on ? producer : std::uint8_t{0};
-    for (const auto& [place, consumed] : entries_) left_.erase(consumed);
-  }
-  /// Each node that consumed it was told not to any more.
-  bool has_left(std::uint8_t producer) const { return left_.count(producer) != 0; }
-
- private:
-  std::map<std::pair<std::uint8_t, std::uint8_t>, std::uint8_t> entries_;  ///< By node and sub-index.
-  std::set<std::uint8_t> left_;
-};
 
 class Monitor {
  public:
@@ -160,7 +135,7 @@ class Monitor {
   void add(const can::Frame& frame, TimePoint time) {
     if (const auto error = can::parse_wire_error(frame)) errors_.add(*error);
     load_.add(frame, time);
-    consumers_.on_frame(frame);
+    masters_.on_frame(frame, time);
     log_->add(time - begin_, context_->session->url(), frame);
   }
 
@@ -188,11 +163,9 @@ class Monitor {
     for (const auto& event : context_->session->take_events()) {
       const bool doubled = std::holds_alternative<NodeEvent::Doubled>(event.what);
       if (!doubled && !is_loss(event)) continue;
-      if (!doubled && consumers_.has_left(event.node)) continue;
-      if (!doubled) {
-        ++lost_;
-        log_->decoder().pdos().forget(event.node);
-      }
+      if (!doubled) log_->decoder().pdos().forget(event.node);
+      if (!doubled && masters_.has_left(event.node, event.time)) continue;
+      if (!doubled) ++lost_;
       const auto text = formatted("ALARM {}", show::event_text(event, context_->profile, context_->chinese));
       log_->remark(event.time - begin_, "alarm", event.node, text, doubled ? "doubled" : "heartbeat-lost");
     }
@@ -223,7 +196,7 @@ class Monitor {
   traffic::BusLoad load_;
   std::uint64_t fd_before_;  ///< CAN FD frames that had come before.
   TimePoint begin_;
-  HeardConsumers consumers_;
+  traffic::HeardMasters masters_;
   can::WireErrors errors_;
   std::size_t lost_ = 0;
   std::vector<session::Lifetime> lifetimes_;  ///< With --ask, of the nodes of the command.

@@ -141,7 +141,8 @@ TEST(FrameLog, WritesNamesThatNeedCareAsTheyAre) {
   const auto pdo = *(logged.lines.end() - 3);
   EXPECT_EQ(
       pdo.substr(pdo.find("\"values\"")),
-      R"("values":[{"index":24641,"sub":0,"name":"Status \"word\" \\ \u0001 {[:,","value":567,"raw":567,"unit":null,"label":null},)"
+      R"("values":[{"index":24641,"sub":0,"name":"Status \"word\" \\ \u0001 {[:,","value":567,"raw":567,"unit":null,)"
+      "\"label\":\"operation enabled (voltage enabled, remote)\"},"
       "{\"index\":24676,\"sub\":0,\"name\":\"位置 \\u007f "
       "actual\\tvalue\",\"value\":-10000,\"raw\":-10000,\"unit\":null,\"label\":null}],"
       "\"text\":\"TPDO1 Status \\\"word\\\" \\\\ \\u0001 {[:, 0x0237 operation enabled (voltage enabled, remote), 位置 \\u007f "
