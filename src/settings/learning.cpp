@@ -197,22 +197,32 @@ class Learning {
     if (const auto code = scan.lacking_code())
       desk_->notices.push_back(formatted(
           "node {} answers reads of objects that it does not have with abort {:08X}h", node_, *code));
+    const auto unread = unread_text(state);
     if (state.entries.empty()) {
       remove_kept();
-      return fail(drive_error(Errc::negative, node_, "no object was found in these ranges"));
+      return fail(drive_error(Errc::negative, node_,
+                              unread.empty()
+                                  ? std::string("no object was found in these ranges")
+                                  : formatted("no object was found; indexes {} were not read", unread)));
     }
     desk_->notices.push_back(
         "objects that can be read are `ro` unless a standard says more: a read does not show write access, sign "
         "or limits. A backup saves those of the maker as well; nothing writes them until the file says `rw`");
-    const auto* standard = desk_->standard != nullptr ? &desk_->standard->dictionary : nullptr;
-    auto text = written(
-        learned_sheet(state, identity_, standard),
-        {std::string(od::kLearnedMark),
-         formatted("Made by servoctl by reading indexes {} of a drive.", ranges_text(state.ranges)),
-         "Reading shows neither write access nor sign, limits or defaults: what can be read is ro where no "
-         "standard says more. Where the manual says that an object can be written, change AccessType to rw."});
+    auto text = text_of(state, unread);
     tell_alarms();
     return Learned{"scan", std::move(text), ranges_text(state.ranges), resumed, state.refusals};
+  }
+
+  std::string text_of(const session::ScanState& state, const std::string& unread) {
+    const auto* standard = desk_->standard != nullptr ? &desk_->standard->dictionary : nullptr;
+    const auto left_out = unread.empty() ? std::string() : formatted(" Indexes not read: {}.", unread);
+    return written(
+        learned_sheet(state, identity_, standard),
+        {std::string(od::kLearnedMark),
+         formatted("Made by servoctl by reading indexes {} of a drive.{}", ranges_text(state.ranges),
+                   left_out),
+         "Reading shows neither write access nor sign, limits or defaults: what can be read is ro where no "
+         "standard says more. Where the manual says that an object can be written, change AccessType to rw."});
   }
 
   void tell_alarms() {

@@ -199,4 +199,18 @@ std::string ranges_text(const std::vector<session::IndexRange>& ranges) {
   return out;
 }
 
+std::string unread_text(const session::ScanState& state) {
+  constexpr std::size_t kMostRanges = 8;
+  std::set<std::uint16_t> indexes;
+  for (const auto& refusal : state.refusals) indexes.insert(refusal.object.index);
+  std::vector<session::IndexRange> out;
+  for (const auto index : indexes) {
+    if (!out.empty() && out.back().last + 1 == index)
+      out.back().last = index;
+    else
+      out.push_back({index, index});
+  }
+  return out.size() > kMostRanges ? formatted("{} of them", indexes.size()) : ranges_text(out);
+}
+
 }  // namespace servoctl::settings

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <string>
 
+#include "base/file.hpp"
 #include "lying_node.hpp"
 #include "od/eds_writer.hpp"
 #include "od/learned_mark.hpp"
@@ -183,8 +184,24 @@ TEST_F(LearningTest, AnEmergencyStopsTheScanAndItsReadsAreLeftOutOfTheNext) {
   const auto done = learn(short_range);
   ASSERT_TRUE(done) << done.error().message;
   EXPECT_NE(report::to_json(report::Value(*done)).find("an EMCY came"), std::string::npos);
+  const auto written = read_file(file);
+  ASSERT_TRUE(written);
+  EXPECT_NE(written->find("Indexes not read: 2A00-2A0F."), std::string::npos)
+      << "whoever has the file alone knows it";
   EXPECT_NE(desk.notices.front().find("goes on at 32 of 65 indexes"), std::string::npos)
       << desk.notices.front();
+}
+
+TEST_F(LearningTest, WhatWasNotReadIsNotSaidToBeMissing) {
+  node->alarming = {{0x2A00, 0}};
+  const LearnOptions short_range{.ranges = {{0x29F0, 0x2A10}}};
+  ASSERT_FALSE(learn(short_range));
+  begin_anew();
+  node->alarming = {{0x2A00, 0}};
+  const auto done = learn(short_range);
+  ASSERT_FALSE(done);
+  EXPECT_NE(done.error().message.find("indexes 2A00-2A0F were not read"), std::string::npos)
+      << done.error().message;
 }
 
 TEST_F(LearningTest, AnEmergencyToTheStoredEdsEndsIt) {
