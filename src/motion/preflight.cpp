@@ -7,6 +7,7 @@
 #include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "drive/assumed_unit.hpp"
 #include "drive/provenance.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/word_bits.hpp"
@@ -174,7 +175,10 @@ class Preflight {
                        rules.motion.is_actuated(word, rules.motion.inputs[1]);
     if (rules.is_assumed("motion.inputs_active_low"))
       text += " (assumed: the manual does not state the active level)";
-    add(limit ? Weight::caution : Weight::good, "inputs", formatted("60FDh is 0x{:08X}: {}", word, text));
+    const bool by_standard = drive::leaves_units_open(units_->profile());
+    if (by_standard) text += " (by CiA 402)";
+    const auto weight = limit ? Weight::caution : by_standard ? Weight::note : Weight::good;
+    add(weight, "inputs", formatted("60FDh is 0x{:08X}: {}", word, text));
   }
 
   void tell_owed() {
