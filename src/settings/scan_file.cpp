@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view kTitle = "servoctl scan 2";
 constexpr std::string_view kEnd = "end";
-constexpr std::size_t kMostRanges = 16;
+constexpr std::size_t kMostNamed = 16;
 constexpr std::string_view kWriteOnly = "w";
 constexpr std::string_view kRefused = "!";
 constexpr std::string_view kHowWritten =
@@ -173,9 +173,9 @@ std::optional<KeptScan> read_scan(std::string_view text) {
 Result<std::vector<session::IndexRange>> parse_ranges(std::string_view text) {
   std::vector<session::IndexRange> out;
   const auto parts = split(text, ',');
-  if (parts.size() > kMostRanges)
+  if (parts.size() > kMostNamed)
     return fail(Errc::usage,
-                formatted("--range names {} ranges, and at most {} are possible", parts.size(), kMostRanges));
+                formatted("--range names {} ranges, and at most {} are possible", parts.size(), kMostNamed));
   for (const auto part : parts) {
     if (trim(part).empty() && parts.size() > 1)
       return fail(Errc::usage, formatted("'{}': a range is missing beside a comma", text),
@@ -200,7 +200,7 @@ std::string ranges_text(const std::vector<session::IndexRange>& ranges) {
 }
 
 std::string unread_text(const session::ScanState& state) {
-  constexpr std::size_t kMostRanges = 8;
+  constexpr std::size_t kMostParts = 8;
   std::set<std::uint16_t> indexes;
   for (const auto& refusal : state.refusals) indexes.insert(refusal.object.index);
   std::vector<session::IndexRange> out;
@@ -210,7 +210,7 @@ std::string unread_text(const session::ScanState& state) {
     else
       out.push_back({index, index});
   }
-  return out.size() > kMostRanges ? formatted("{} of them", indexes.size()) : ranges_text(out);
+  return out.size() > kMostParts ? formatted("{} of them", indexes.size()) : ranges_text(out);
 }
 
 }  // namespace servoctl::settings
