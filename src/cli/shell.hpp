@@ -274,8 +274,8 @@ class Shell {
   std::map<std::string, std::shared_ptr<const drive::Profile>> profiles_;
   std::map<std::string, FoundFamily> families_;  ///< Of drives, by bus, node and restarts.
   CabinetHolder cabinet_;
-  std::set<std::string> told_of_files_;  ///< What the data sheets have that is told once.
-  bool cabinet_told_ = false;            ///< For --verbose, in this line.
+  std::set<std::string> shown_warnings_;  ///< Of data sheets: each is shown once in a run.
+  bool cabinet_told_ = false;             ///< For --verbose, in this line.
   /// By canonical_url() and node: the families that note_family() was told.
   std::map<std::pair<std::string, std::uint8_t>, const drive::Profile*> noted_families_;
   LastWrite last_write_;

@@ -86,7 +86,7 @@ Result<void> Shell::prepare_profile(Run& run, bool changes) {
   run.context.profile = *loaded;
   if (console_->is_verbose()) tell_family(run);
   for (const auto& warning : (*loaded)->warnings)
-    if (told_of_files_.insert(warning).second || run.settings.json) run.context.notices.push_back(warning);
+    if (shown_warnings_.insert(warning).second || run.settings.json) run.context.notices.push_back(warning);
   return {};
 }
 

@@ -56,7 +56,7 @@ std::size_t decimal_length(std::string_view text) {
   return at;
 }
 
-/// What may stand behind the factor of a unit: no further calculation, no part of a number.
+/// What may follow the factor of a unit: no further calculation, no part of a number.
 bool is_unit_word(std::string_view text) {
   if (text.empty()) return true;
   if (std::string_view("^/*,.-+=(").find(text.front()) != std::string_view::npos) return false;
@@ -144,7 +144,7 @@ std::optional<std::pair<std::string, std::string>> family_range(std::string_view
 
 namespace {
 
-/// Lists of which every entry begins a line of the cell, or stands behind blanks: `0: off 1: on`.
+/// Lists of which every entry begins a line of the cell, or follows blanks: `0: off 1: on`.
 std::string with_separators(std::string list) {
   for (std::size_t at = 1; at < list.size(); ++at) {
     const auto rest = std::string_view(list).substr(at);

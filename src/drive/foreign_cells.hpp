@@ -24,7 +24,7 @@ bool is_spreadsheet_date(std::string_view text);
 std::optional<std::string> family_labels(std::string_view text);
 /// An object as a table names it.
 struct ForeignObject {
-  std::string text;                      ///< `0x2001:01`, or what stands there where it is no object.
+  std::string text;                      ///< `0x2001:01`, or the text of the cell where it is no object.
   std::optional<ObjectAddress> address;  ///< Empty: it is no object.
   bool has_sub = false;                  ///< A sub-index is given.
   std::string doubtful;                  ///< A sub-index that may be decimal or hexadecimal: `10`.

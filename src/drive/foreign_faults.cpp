@@ -158,7 +158,7 @@ class FaultConversion {
             "write the code as 0x8611, or head the column 603Fh");
     } else if (may_be_code(text)) {
       wrong(row.line, formatted("'{}' may be a code of 603Fh or what the panel shows", text),
-            "write one code in a row, as 0x8611; what the panel shows stands in a column 'panel'");
+            "write one code in a row, as 0x8611; write what the panel shows into a column 'panel'");
     } else {
       row.panel = text;
       if (displayed_line_ == 0) displayed_line_ = row.line;
@@ -177,7 +177,7 @@ class FaultConversion {
       const auto [first, is_new] = known.emplace(row.code + "," + row.extra + "," + row.panel, &row);
       const auto& shown = row.panel.empty() ? row.code : row.panel;
       if (is_new || shown.empty()) continue;
-      wrong(row.line, formatted("{} stands in line {} as well", shown, first->second->line),
+      wrong(row.line, formatted("{} is in line {} as well", shown, first->second->line),
             "write all causes of a fault into one row, or tell the rows apart by code, extra or panel");
     }
   }
@@ -211,11 +211,7 @@ ConvertedTable convert_faults(std::string_view bytes, std::string_view file, std
                                 "remove it; name it 'panel' if the panel shows these numbers"));
   if (errors.size() != before) return {};
   auto out = FaultConversion(table, file, errors).run();
-  std::stable_sort(errors.begin() + static_cast<std::ptrdiff_t>(before), errors.end(),
-                   [](const Error& a, const Error& b) { return a.line.value_or(0) < b.line.value_or(0); });
-  for (const auto& unknown : table.unknown())
-    out.notices.push_back(
-        formatted("{}:{}: column '{}' is not understood and left out", file, table.heading_line(), unknown));
+  table.finish(file, before, errors, out);
   return out;
 }
 

@@ -20,7 +20,7 @@ bool is_in(std::span<const std::string_view> words, std::string_view word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// The heading without the first of the marks that stands in it; empty: none does.
+/// The heading without the first of the marks that it contains; empty: it has none.
 std::string without_mark(std::string_view text, std::span<const std::string_view> marks) {
   auto out = lower(text);
   for (const auto mark : marks)
@@ -207,8 +207,8 @@ void ForeignTable::check_headings(std::span<const Heading> headings, std::string
           "heading"));
     else if (number && has_bracket(text) && !is_harmless(text))
       errors.push_back(file_error(file, heading_line_,
-                                  formatted("'{}': what stands in brackets over numbers is not read", text),
-                                  "take it out of the heading; units stand in a column 'unit'"));
+                                  formatted("'{}': text in brackets over numbers is not read", text),
+                                  "take it out of the heading; write units into a column 'unit'"));
   }
 }
 
@@ -266,6 +266,15 @@ bool ForeignTable::counts_rows(std::string_view column) const {
     if (cell(row, column) != formatted("{}", ++count)) return false;
   }
   return count > 0;
+}
+
+void ForeignTable::finish(std::string_view file, std::size_t first_error, std::vector<Error>& errors,
+                          ConvertedTable& out) const {
+  std::stable_sort(errors.begin() + static_cast<std::ptrdiff_t>(first_error), errors.end(),
+                   [](const Error& a, const Error& b) { return a.line.value_or(0) < b.line.value_or(0); });
+  for (const auto& heading : unknown_)
+    out.notices.push_back(
+        formatted("{}:{}: column '{}' is not understood and left out", file, heading_line_, heading));
 }
 
 bool ForeignTable::is_title(const CsvTable::Row& row) {

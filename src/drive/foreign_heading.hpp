@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/csv.hpp"
+#include "drive/foreign_table.hpp"
 
 namespace servoctl::drive {
 
@@ -23,7 +24,7 @@ struct Heading {
 /// Those of a table of parameters.
 std::span<const Heading> parameter_headings();
 
-/// `Default Value` and `default_value` are `defaultvalue`; what stands in brackets is left out.
+/// `Default Value` and `default_value` are `defaultvalue`; text in brackets is left out.
 std::string folded_heading(std::string_view text);
 
 /// A table of somebody's, its columns known by name.
@@ -47,8 +48,10 @@ class ForeignTable {
   static bool is_title(const CsvTable::Row& row);
   /// Whether the column has 1, 2, 3 and so on.
   bool counts_rows(std::string_view column) const;
-  /// Headings that mean nothing here; with the line they stand in.
-  const std::vector<std::string>& unknown() const { return unknown_; }
+  /// The errors from this place on, in the order of their lines; and a notice for each heading that means
+  /// nothing here.
+  void finish(std::string_view file, std::size_t first_error, std::vector<Error>& errors,
+              ConvertedTable& out) const;
   std::uint32_t heading_line() const { return heading_line_; }
 
  private:

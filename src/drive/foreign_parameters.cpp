@@ -279,11 +279,7 @@ ConvertedTable convert_parameters(std::string_view bytes, std::string_view file,
   check_columns(table, file, errors);
   if (errors.size() != before) return {};
   auto out = ParameterConversion(table, file, dictionary, errors).run();
-  std::stable_sort(errors.begin() + static_cast<std::ptrdiff_t>(before), errors.end(),
-                   [](const Error& a, const Error& b) { return a.line.value_or(0) < b.line.value_or(0); });
-  for (const auto& heading : table.unknown())
-    out.notices.push_back(
-        formatted("{}:{}: column '{}' is not understood and left out", file, table.heading_line(), heading));
+  table.finish(file, before, errors, out);
   return out;
 }
 

@@ -78,7 +78,7 @@ Result<void> check_family_name(std::string_view name) {
   const auto fits = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
-  // Where a family stands these are subcommands, the drive itself, all families, or a kind of bus.
+  // Where a family is named these are subcommands, the drive itself, all families, or a kind of bus.
   constexpr std::string_view kTaken[] = {"online", "check", "new", "all", "local", "sim"};
   const bool taken = std::find(std::begin(kTaken), std::end(kTaken), name) != std::end(kTaken);
   const bool begins = !name.empty() && name.front() >= 'a' && name.front() <= 'z';

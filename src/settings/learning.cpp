@@ -203,7 +203,8 @@ class Learning {
       return fail(drive_error(Errc::negative, node_,
                               unread.empty()
                                   ? std::string("no object was found in these ranges")
-                                  : formatted("no object was found; indexes {} were not read", unread)));
+                                  : formatted("no object was found; indexes {} were not read", unread),
+                              "--range names other indexes; `status` shows whether the drive is in a fault"));
     }
     desk_->notices.push_back(
         "objects that can be read are `ro` unless a standard says more: a read does not show write access, sign "
