@@ -15,9 +15,36 @@ bool is_asked(session::Session& session, std::uint8_t node) {
   return type && drive::is_drive_type(load_le(*type));
 }
 
-std::optional<std::uint16_t> read_word(session::Session& session, std::uint8_t node, const OtherAxis& axis) {
-  const auto answer = session.upload(node, axis.statusword_object());
+std::optional<std::uint16_t> word_in(const Result<Bytes>& answer) {
   return answer ? std::optional(static_cast<std::uint16_t>(load_le(*answer))) : std::nullopt;
+}
+
+/// Those that the family's dictionary has.
+std::vector<OtherAxis> listed_axes(session::Session& session, const drive::Profile& profile,
+                                   std::uint8_t node) {
+  std::vector<OtherAxis> out;
+  for (unsigned number = 2; number <= drive::kMostAxes; ++number) {
+    OtherAxis axis{number, {}};
+    if (profile.dictionary.find(axis.statusword_object()) == nullptr) continue;
+    axis.statusword = word_in(session.upload(node, axis.statusword_object()));
+    out.push_back(axis);
+  }
+  return out;
+}
+
+/// Those that answer. One that is silent about what it lacks is not asked on, nor is one that sent an EMCY.
+std::vector<OtherAxis> answering_axes(session::Session& session, std::uint8_t node) {
+  std::vector<OtherAxis> out;
+  if (session.wary_of(node) != nullptr || !is_asked(session, node)) return out;
+  const auto alarms = session.watch().alarms(node);
+  for (unsigned number = 2; number <= drive::kMostAxes && session.watch().alarms(node) == alarms; ++number) {
+    OtherAxis axis{number, {}};
+    const auto answer = session.upload(node, axis.statusword_object());
+    if (!answer && answer.error().code != Errc::sdo_abort) break;
+    axis.statusword = word_in(answer);
+    if (answer) out.push_back(axis);
+  }
+  return out;
 }
 
 }  // namespace
@@ -38,17 +65,8 @@ std::string OtherAxis::text() const {
 
 std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profile* profile,
                                   std::uint8_t node) {
-  std::vector<OtherAxis> out;
   const bool is_known = profile != nullptr && !profile->is_generic();
-  for (unsigned number = 2; number <= drive::kMostAxes; ++number) {
-    OtherAxis axis{number, {}};
-    if (is_known && profile->dictionary.find(axis.statusword_object()) == nullptr) break;
-    if (!is_known && number == 2 && !is_asked(session, node)) break;
-    axis.statusword = read_word(session, node, axis);
-    if (!is_known && !axis.statusword) break;
-    out.push_back(axis);
-  }
-  return out;
+  return is_known ? listed_axes(session, *profile, node) : answering_axes(session, node);
 }
 
 std::string axes_text(const std::vector<OtherAxis>& others, bool has_first) {
@@ -74,7 +92,7 @@ Result<void> stop_axes(session::Session& session, std::uint8_t node, std::vector
   for (auto& axis : axes) {
     const auto end = session.now() + Power::kPatience;
     do {
-      axis.statusword = read_word(session, node, axis);
+      axis.statusword = word_in(session.upload(node, axis.statusword_object()));
     } while (axis.may_be_energised() && session.now() < end && pause(session, kAxisPause));
     const bool stands = !disable && axis.statusword &&
                         drive::decode_state(*axis.statusword) == drive::DriveState::quick_stop_active;

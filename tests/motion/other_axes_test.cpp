@@ -13,14 +13,15 @@ class TwoAxes : public testing::Test {
  protected:
   explicit TwoAxes(std::string_view family = "cia402") : bench(family, 10000) {
     bench.bus->swallows = [this](const std::string& frame) {
-      if (frame.rfind("601#40416800", 0) == 0) {
-        bench.bus->injected.push_back(fmt::format("581#4B416800{:02X}{:02X}0000", word & 0xFFU, word >> 8U));
+      if (frame.rfind("601#4041" + page + "00", 0) == 0) {
+        bench.bus->injected.push_back(
+            fmt::format("581#4B41{}00{:02X}{:02X}0000", page, word & 0xFFU, word >> 8U));
         return true;
       }
-      if (frame.rfind("601#2B406800", 0) != 0) return false;
+      if (frame.rfind("601#2B40" + page + "00", 0) != 0) return false;
       commands.push_back(frame.substr(12, 4));
       if (obeys) word = 0x0250;
-      bench.bus->injected.push_back("581#6040680000000000");
+      bench.bus->injected.push_back("581#6040" + page + "0000000000");
       return true;
     };
   }
@@ -37,6 +38,7 @@ class TwoAxes : public testing::Test {
   }
 
   MotionBench bench;
+  std::string page = "68";  ///< Of its objects: 6840h, 6841h.
   unsigned word = 0x0250;
   bool obeys = true;
   std::vector<std::string> commands;
@@ -73,6 +75,16 @@ TEST_F(TwoAxes, LoseTheirPowerTogether) {
   EXPECT_TRUE(stop_axes(*bench.session, 1, others, true));
   EXPECT_EQ(commands, (std::vector<std::string>{"0700", "0000"}));
   EXPECT_FALSE(others.front().may_be_energised());
+}
+
+TEST_F(TwoAxes, ANumberBetweenThemMayBeMissing) {
+  page = "70";
+  word = 0x0237;
+  auto others = other_axes(*bench.session, &bench.profile(), 1);
+  ASSERT_EQ(others.size(), 1U);
+  EXPECT_EQ(others.front().text(), "axis 3 (0x7041:0) is in operation enabled");
+  EXPECT_TRUE(stop_axes(*bench.session, 1, others, true));
+  EXPECT_EQ(commands, (std::vector<std::string>{"0700", "0000"}));
 }
 
 TEST_F(TwoAxes, OneThatDoesNotObeyIsAnError) {
