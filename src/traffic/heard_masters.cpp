@@ -11,6 +11,9 @@ namespace {
 /// An end is noticed some periods after the last heartbeat.
 constexpr Duration kBefore = std::chrono::seconds(3);
 
+constexpr std::uint8_t kExpeditedFour = 0x23;  ///< A write of four bytes (CiA 301, 7.2.4.3.3).
+constexpr std::uint8_t kConfirmed = 0x60;
+
 /// An EMCY, a PDO, an answer to an SDO or a boot-up.
 bool tells_of_drive(const can::Frame& frame) {
   if (frame.extended || frame.remote || frame.error) return false;
@@ -24,14 +27,29 @@ bool tells_of_drive(const can::Frame& frame) {
 
 void HeardMasters::on_frame(const can::Frame& frame, TimePoint time) {
   if (tells_of_drive(frame)) drives_.insert(static_cast<std::uint8_t>(frame.id & 0x7FU));
-  const auto write = canopen::sdo_write_request(frame);
-  if (!write || write->object.index != objects::kConsumerHeartbeatIndex || frame.size != 8) return;
-  const auto producer = static_cast<std::uint8_t>(frame.data[6] & 0x7FU);
-  const bool on = (frame.data[4] | frame.data[5]) != 0 && producer != 0;
-  auto& entry = entries_[{write->node, write->object.sub}];
+  if (frame.extended || frame.remote || frame.error || frame.size != 8) return;
+  const auto object = canopen::sdo_object(frame);
+  if (object.index != objects::kConsumerHeartbeatIndex) return;
+  const Place place{static_cast<std::uint8_t>(frame.id & 0x7FU), object.sub};
+  if (canopen::sdo_write_request(frame)) {
+    asked_.erase(place);
+    // Of other writes the value is in frames that follow.
+    if (frame.data[0] != kExpeditedFour) return void(entries_.erase(place));
+    const bool on = (frame.data[4] | frame.data[5]) != 0;
+    asked_[place] = on ? static_cast<std::uint8_t>(frame.data[6] & 0x7FU) : std::uint8_t{0};
+  } else if ((frame.id & 0x780U) == 0x580) {
+    if (frame.data[0] == kConfirmed) on_confirmed(place, time);
+    asked_.erase(place);
+  }
+}
+
+void HeardMasters::on_confirmed(const Place& place, TimePoint time) {
+  const auto asked = asked_.find(place);
+  if (asked == asked_.end()) return;
+  auto& entry = entries_[place];
   if (entry != 0) left_[entry] = time;
-  entry = on ? producer : std::uint8_t{0};
-  for (const auto& [place, consumed] : entries_) left_.erase(consumed);
+  entry = asked->second;
+  for (const auto& [where, consumed] : entries_) left_.erase(consumed);
 }
 
 bool HeardMasters::has_left(std::uint8_t producer, TimePoint noticed) const {

@@ -11,7 +11,7 @@
 namespace servoctl::traffic {
 
 /// Which heartbeats end because their producer ends: a master that does takes itself out of the drives that
-/// watch it (1016h) right before. No node that was heard as a drive is one.
+/// watch it (1016h) right before, as they confirm. No node that was heard as a drive is one.
 class HeardMasters {
  public:
   void on_frame(const can::Frame& frame, TimePoint time);
@@ -21,7 +21,12 @@ class HeardMasters {
   bool has_left(std::uint8_t producer, TimePoint noticed) const;
 
  private:
-  std::map<std::pair<std::uint8_t, std::uint8_t>, std::uint8_t> entries_;  ///< By node and sub-index.
+  using Place = std::pair<std::uint8_t, std::uint8_t>;  ///< A node and a sub-index of 1016h.
+
+  void on_confirmed(const Place& place, TimePoint time);
+
+  std::map<Place, std::uint8_t> asked_;    ///< Whom it is to consume; 0: nobody. Not confirmed yet.
+  std::map<Place, std::uint8_t> entries_;  ///< Whom it consumes.
   std::map<std::uint8_t, TimePoint> left_;
   std::set<std::uint8_t> drives_;
 };
