@@ -61,6 +61,7 @@ class RulesReader {
     if (misses && errors_->size() == before)
       errors_->push_back(make_error(Errc::file, formatted("{}: 'format' or 'family' is missing", file_),
                                     "begin the file with format = 1 and family = \"NAME\""));
+    if (rules_.is_assumed("motion.inputs_active_low")) rules_.motion.inputs_known = true;
     return std::move(rules_);
   }
 

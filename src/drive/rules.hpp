@@ -201,6 +201,7 @@ struct MotionRules {
   std::string rated_torque;  ///< Object or parameter with the rated torque in the unit of 6071h, if not in %.
   std::vector<std::uint8_t> inputs{0, 1, 2};    ///< Bits of 60FDh: negative limit, positive limit, home.
   std::vector<std::uint8_t> inputs_active_low;  ///< Bits of 60FDh that are 0 while their switch is actuated.
+  bool inputs_known = false;  ///< The family states one of the two, or that it assumes the level.
 
   /// Whether the switch behind this bit of 60FDh is actuated: an axis at its limit, or on its home switch.
   bool is_actuated(std::uint32_t inputs_word, unsigned bit) const;

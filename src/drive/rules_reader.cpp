@@ -264,11 +264,16 @@ Result<void> read_motion(const TableReader& reader, Rules& rules) {
        {"rated_torque", into(out.rated_torque)},
        {"inputs_active_low",
         [&](const auto& n) {
+          out.inputs_known = true;
           return into(out.inputs_active_low)(n) &&
                  std::all_of(out.inputs_active_low.begin(), out.inputs_active_low.end(),
                              [](std::uint8_t bit) { return bit < 32; });
         }},
-       {"inputs", [&](const auto& n) { return into(out.inputs)(n) && out.inputs.size() == 3; }},
+       {"inputs",
+        [&](const auto& n) {
+          out.inputs_known = true;
+          return into(out.inputs)(n) && out.inputs.size() == 3;
+        }},
        {"no_homing", into(out.no_homing)},
        {"homing_like", [&](const toml::node& n) { return read_numbered(n, out.homing_like); }},
        {"software_limits", condition_into(out.software_limits)},

@@ -71,7 +71,27 @@ ObjectAddress of_first_axis(ObjectAddress object) {
   return {static_cast<std::uint16_t>(kFirst + (object.index - kFirst) % kStep), object.sub};
 }
 
+namespace {
+
+/// `set bits: 2, 16-21`
+std::string set_bits(std::uint32_t word, Chinese chinese) {
+  if (word == 0) return in_language("no bit is set", chinese);
+  std::string bits;
+  for (unsigned bit = 0; bit < 32; ++bit) {
+    if ((word >> bit & 1U) == 0) continue;
+    unsigned last = bit;
+    while (last < 31 && (word >> (last + 1) & 1U) != 0) ++last;
+    append(bits, last == bit ? formatted("{}", bit) : formatted("{}-{}", bit, last), ", ");
+    bit = last;
+  }
+  const auto format = in_language("set bits: {}", chinese);
+  return formatted_of(format, fmt::make_format_args(bits));
+}
+
+}  // namespace
+
 std::string switch_words(const MotionRules& rules, std::uint32_t inputs, Chinese chinese) {
+  if (!rules.inputs_known) return set_bits(inputs, chinese);
   constexpr std::array<std::string_view, 3> kSwitches{"negative limit", "positive limit", "home switch"};
   std::string out;
   for (std::size_t i = 0; i < std::min(kSwitches.size(), rules.inputs.size()); ++i)

@@ -7,7 +7,6 @@
 #include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
-#include "drive/assumed_unit.hpp"
 #include "drive/provenance.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/word_bits.hpp"
@@ -171,13 +170,12 @@ class Preflight {
   void add_inputs(std::uint32_t word) {
     const auto& rules = units_->profile().rules;
     auto text = drive::switch_words(rules.motion, word);
-    const bool limit = rules.motion.is_actuated(word, rules.motion.inputs[0]) ||
-                       rules.motion.is_actuated(word, rules.motion.inputs[1]);
+    const bool known = rules.motion.inputs_known;
+    const bool limit = known && (rules.motion.is_actuated(word, rules.motion.inputs[0]) ||
+                                 rules.motion.is_actuated(word, rules.motion.inputs[1]));
     if (rules.is_assumed("motion.inputs_active_low"))
       text += " (assumed: the manual does not state the active level)";
-    const bool by_standard = drive::leaves_units_open(units_->profile());
-    if (by_standard) text += " (by CiA 402)";
-    const auto weight = limit ? Weight::caution : by_standard ? Weight::note : Weight::good;
+    const auto weight = limit ? Weight::caution : known ? Weight::good : Weight::note;
     add(weight, "inputs", formatted("60FDh is 0x{:08X}: {}", word, text));
   }
 

@@ -4,7 +4,6 @@
 
 #include "base/text.hpp"
 #include "canopen/emergency.hpp"
-#include "drive/assumed_unit.hpp"
 #include "drive/cia402.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/word_bits.hpp"
@@ -30,7 +29,6 @@ std::string register_words(std::uint64_t value, drive::Chinese chinese) {
 std::string input_words(std::uint64_t inputs, const drive::Profile* family, drive::Chinese chinese) {
   if (family == nullptr) return {};
   const auto words = drive::switch_words(family->rules.motion, static_cast<std::uint32_t>(inputs), chinese);
-  if (drive::leaves_units_open(*family)) return report::told(chinese != nullptr, "{} (by CiA 402)", words);
   const bool assumed = family->rules.is_assumed("motion.inputs_active_low");
   return assumed ? report::told(chinese != nullptr, "{} (active level assumed)", words) : words;
 }

@@ -23,7 +23,9 @@ TEST(ValueWords, DigitalInputsAreThoseOfTheFamily) {
   const auto sv2 = family("sv2");
   EXPECT_EQ(value_words(kInputs, 1, false, &sv2), "home switch (active level assumed)");
   const auto generic = family("cia402");
-  EXPECT_EQ(value_words(kInputs, 1, false, &generic), "negative limit (by CiA 402)");
+  EXPECT_EQ(value_words(kInputs, 1, false, &generic), "set bits: 0") << "makers differ in bits and levels";
+  EXPECT_EQ(value_words(kInputs, 0x803F0004, false, &generic), "set bits: 2, 16-21, 31");
+  EXPECT_EQ(value_words(kInputs, 0, false, &generic), "no bit is set");
   EXPECT_EQ(value_words(kInputs, 1, false, nullptr), "");
 }
 
