@@ -168,17 +168,16 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
 
 /// What the dictionary says is refused before anything is sent.
 Result<void> check_names(const Context& context, const Arguments& arguments) {
-  bool any_plotted = false;
+  std::vector<traffic::Channel> channels;
   for (const auto& name : arguments.all("object")) {
     const auto target = drive::resolve(context.profile, name, drive::Match::part);
     if (!target) return fail(target.error());
-    const traffic::Channel channel{context.nodes.front(), *target, name};
-    if (const auto number = traffic::check_number(channel); !number) return number;
-    any_plotted = any_plotted || !channel.is_word();
+    channels.push_back({.node = context.nodes.front(), .target = *target, .name = name});
+    if (const auto number = traffic::check_number(channels.back()); !number) return number;
   }
-  if (any_plotted || !arguments.has("--svg")) return {};
-  return fail(Errc::usage, "--svg: bit fields are not plotted, and no other object is named",
-              "--csv writes their values; the result shows them in words");
+  const auto why = arguments.has("--svg") ? traffic::no_plot_text(channels, "--svg") : std::string();
+  return why.empty() ? Result<void>()
+                     : fail(Errc::usage, why, "leave it out; the result lists their values in words");
 }
 
 Result<void> write_files(const Arguments& arguments, std::span<const Series> series,
@@ -189,7 +188,7 @@ Result<void> write_files(const Arguments& arguments, std::span<const Series> ser
             write_file_atomically(std::string(arguments.text("--csv")), traffic::series_csv(series));
         !done)
       return done;
-  if (arguments.has("--svg"))
+  if (arguments.has("--svg") && !plotted.empty())
     return write_file_atomically(std::string(arguments.text("--svg")), report::svg_plot(plotted));
   return {};
 }
@@ -215,12 +214,15 @@ Result<Value> run_scope(Context& context, const Arguments& arguments) {
   report::Record out{{"seconds", std::round(scope.seconds() * 1000) / 1000},
                      {"objects", traffic::sampling_table(scope.records())}};
   traffic::add_words(out, context, scope.records());
-  for (const auto* option : {"--csv", "--svg"}) {
-    const bool is_written = arguments.has(option) && !series.empty();
+  for (const auto& [option, written_series] : {std::pair("--csv", &series), std::pair("--svg", &plotted)}) {
+    const bool is_written = arguments.has(option) && !written_series->empty();
     out.push_back({option + 2, is_written ? Value(arguments.text(option)) : Value(),
                    is_written ? report::Show::everywhere : report::Show::json});
   }
   out.push_back({"plot", report::Plot{series}, report::Show::json});
+  if (arguments.has("--plot"))
+    if (auto why = traffic::no_plot_text(sampler->channels(), "--plot"); !why.empty())
+      context.notices.push_back(std::move(why));
   if (arguments.has("--plot") && !plotted.empty())
     out.push_back({"plot_text", report::Plot{plotted}, report::Show::text, "plot"});
   return Value(std::move(out));

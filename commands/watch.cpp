@@ -73,7 +73,8 @@ class WatchingValues {
       for (auto& error : traffic::failures_of(before_)) context_->errors.push_back(std::move(error));
     report::Record out{{"objects", traffic::sampling_table(records_)}};
     traffic::add_words(out, *context_, records_);
-    if (plot) out.push_back({"plot", report::Plot{traffic::plotted_series(records_)}, report::Show::text});
+    if (auto plotted = traffic::plotted_series(records_); plot && !plotted.empty())
+      out.push_back({"plot", report::Plot{std::move(plotted)}, report::Show::text});
     out.push_back(
         {"samples", context_->keeps_samples ? Value(writer_.take_kept()) : Value(), report::Show::json});
     return out;
@@ -179,6 +180,9 @@ Result<Value> run_watch(Context& context, const Arguments& arguments) {
     (void)session::identify(*context.session, context.nodes, context.profile->rules);
   auto sampler = traffic::Sampler::make(context, arguments.all("object"));
   if (!sampler) return fail(sampler.error());
+  if (arguments.has("--plot"))
+    if (auto why = traffic::no_plot_text(sampler->channels(), "--plot"); !why.empty())
+      context.notices.push_back(std::move(why));
   auto& session = *context.session;
   const auto period = every->value_or(kDefaultEvery);
   WatchingValues watching(context, *sampler, arguments.has("--changes"));

@@ -64,6 +64,10 @@ void tell_first_steps(Console& console) {
     console.note(console.in_language(line) + "\n");
 }
 
+bool needs_first_steps(Shell& shell) {
+  return shell.defaults().bus.empty() && shell.defaults().nodes.empty();
+}
+
 /// Lines from a pipe or file: stops at the first that fails, whose exit code is the answer. What a line
 /// begins goes on behind it, as at the prompt, and ends with the input.
 int run_pipe(Shell& shell) {
@@ -79,7 +83,7 @@ int run_pipe(Shell& shell) {
     code = runner.run(line);
   }
   if (code == 0 && interrupted()) code = exit_code(Errc::interrupted);
-  if (!any && code == 0) tell_first_steps(shell.console());
+  if (!any && code == 0 && needs_first_steps(shell)) tell_first_steps(shell.console());
   if (code != 0) shell.let_go();
   shell.stop_sync();
   return code;
@@ -170,8 +174,7 @@ int run_lines(Shell& shell, const std::vector<std::string>& words, StandardConso
   console.set_colour(shell.defaults().colour);
   if (::isatty(STDIN_FILENO) != 1) return run_pipe(shell);
   if (shell.defaults().bus.empty()) {
-    if (!take_last_place(shell, shell.state_folder()) && shell.defaults().nodes.empty())
-      tell_first_steps(console);
+    if (!take_last_place(shell, shell.state_folder()) && needs_first_steps(shell)) tell_first_steps(console);
   } else if (const auto opened = open_chosen_bus(shell, shell.defaults()); !opened) {
     return shell.report_error(opened.error(), false);
   }

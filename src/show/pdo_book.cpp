@@ -182,8 +182,8 @@ void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string
   }
 }
 
-void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json) {
-  const auto mode = mode_in(view, data);
+void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json, std::int8_t mode) {
+  if (const auto told = mode_in(view, data); told != 0) mode = told;
   json.begin_list();
   if (fits_frame(view, data))
     for (const auto& field : view.fields) write_value(field, field.value(data), mode, json);

@@ -64,7 +64,7 @@ bool shows_values(const PdoView& view, ByteSpan data);
 void append_values(const PdoView& view, ByteSpan data, bool chinese, std::string& out, std::int8_t mode = 0);
 
 /// Writes the values as a list of records; an empty one where append_values() shows raw bytes.
-void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json);
+void write_values(const PdoView& view, ByteSpan data, report::JsonWriter& json, std::int8_t mode = 0);
 
 /// Which PDO a CAN-ID belongs to, on a bus with many nodes. Of a node nothing is known of, the PDOs are those
 /// its family leaves the factory with, at the CAN-IDs of the pre-defined connection set.

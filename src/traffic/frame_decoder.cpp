@@ -172,7 +172,7 @@ void FrameDecoder::decode_pdo(const can::Frame& frame, std::uint8_t node, const 
   fields_.member("pdo", view->name);
   fields_.text_or_null("mapping", assumed ? "factory" : "");
   fields_.key("values");
-  show::write_values(*view, data, fields_);
+  show::write_values(*view, data, fields_, modes_.of(node));
 }
 
 void FrameDecoder::decode_error_control(const can::Frame& frame) {
@@ -294,23 +294,24 @@ void FrameDecoder::add_sdo_value(const canopen::SdoStep& step, const drive::Targ
   const auto value = show::decode_value(reading, data);
   out_.text += " = " + value.text;
   // The mode that was heard tells more than the value alone.
-  if (const auto words = words_of(data, target.address); !words.empty())
+  if (const auto words = words_of(data, target.address, options_.chinese); !words.empty())
     out_.text += " " + words;
   else if (const auto label = show::label_text(value, options_.chinese); !label.empty())
     out_.text += " " + label;
   if (!options_.fields) return;
   fields_.member("value", value.value);
   fields_.text_or_null("unit", value.unit);
-  fields_.member("label", value.label);
+  const auto words = words_of(data, target.address, false);
+  fields_.member("label", words.empty() ? value.label : report::Value(words));
   fields_.member("bytes", to_hex(*step.data));
 }
 
 /// What controlword and statusword say; empty for every other object.
-std::string FrameDecoder::words_of(const Bytes& data, ObjectAddress object) const {
+std::string FrameDecoder::words_of(const Bytes& data, ObjectAddress object, bool chinese) const {
   if (data.size() != 2) return {};
   const auto word = static_cast<std::uint16_t>(load_le(data));
   const auto mode = modes_.of(*out_.node);
-  const auto language = options_.chinese ? report::chinese_word : nullptr;
+  const auto language = chinese ? report::chinese_word : nullptr;
   if (object == objects::kStatusword) return drive::statusword_words(word, mode, language);
   return object == objects::kControlword ? drive::controlword_words(word, mode, language) : std::string();
 }

@@ -78,7 +78,7 @@ class FrameDecoder {
   void end_sdo_fields(const canopen::SdoStep& step);
   void learn(const canopen::SdoStep& step);
   const drive::Profile* family_of(std::uint8_t node) const;
-  std::string words_of(const Bytes& data, ObjectAddress object) const;
+  std::string words_of(const Bytes& data, ObjectAddress object, bool chinese) const;
   std::string name_of(const drive::Target& target) const;
   std::string_view word(std::string_view english) const;
   std::string sentence(const std::string& english) const;

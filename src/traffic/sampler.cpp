@@ -308,6 +308,13 @@ std::vector<Series> series_of(std::span<const ChannelRecord> records) {
   return out;
 }
 
+std::string no_plot_text(std::span<const Channel> channels, std::string_view option) {
+  const bool none =
+      std::all_of(channels.begin(), channels.end(), [](const Channel& channel) { return channel.is_word(); });
+  return none ? formatted("{}: bit fields are not plotted, and no other object is named", option)
+              : std::string();
+}
+
 std::vector<Series> plotted_series(std::span<const ChannelRecord> records) {
   std::vector<Series> out;
   for (const auto& record : records)

@@ -121,6 +121,9 @@ void add_words(report::Record& out, const show::Desk& desk, std::span<const Chan
 /// The series of the channels that had any number.
 std::vector<Series> series_of(std::span<const ChannelRecord> records);
 
+/// For who asks for a plot of channels that are bit fields, all of them: why there is none. Empty for others.
+std::string no_plot_text(std::span<const Channel> channels, std::string_view option);
+
 /// Those of them that are plotted: no bit fields.
 std::vector<Series> plotted_series(std::span<const ChannelRecord> records);
 

@@ -47,4 +47,7 @@ with tempfile.TemporaryDirectory() as folder:
     done = subprocess.run([servoctl], env={**env, "XDG_STATE_HOME": folder}, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True)
     check(f"without lines and bus three lines say what to do first: {done.stderr}",
           done.returncode == 0 and done.stderr.count(b"\n") == 3 and b"bus detect" in done.stderr and b"scan" in done.stderr)
+    done = subprocess.run([servoctl, "-b", "sim:gsd600@1"], env={**env, "XDG_STATE_HOME": folder}, cwd=folder, stdin=subprocess.DEVNULL,
+                          capture_output=True)
+    check(f"who names a bus knows that: {done.stderr}", done.returncode == 0 and b"bus detect" not in done.stderr)
 finish()
