@@ -11,6 +11,7 @@
 #include "command/duration_option.hpp"
 #include "pdo/scope_mapping.hpp"
 #include "report/svg.hpp"
+#include "traffic/channel_record.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/sampler.hpp"
 

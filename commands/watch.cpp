@@ -7,6 +7,7 @@
 #include "session/identify.hpp"
 #include "show/records.hpp"
 #include "show/sample_writer.hpp"
+#include "traffic/channel_record.hpp"
 #include "traffic/listening.hpp"
 #include "traffic/sampler.hpp"
 

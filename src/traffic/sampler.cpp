@@ -1,14 +1,11 @@
 #include "traffic/sampler.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
-#include "base/csv.hpp"
 #include "base/format.hpp"
-#include "base/number.hpp"
 #include "drive/assumed_unit.hpp"
 #include "session/measure.hpp"
 #include "show/alarm_question.hpp"
@@ -17,8 +14,6 @@
 
 namespace servoctl::traffic {
 namespace {
-
-using report::Value;
 
 /// What the drives say their units are worth, each asked once. `node`: of this one alone.
 void add_bridges(show::Desk& desk, std::vector<Channel>& channels, std::optional<std::uint8_t> node = {}) {
@@ -56,10 +51,15 @@ void add_own_units(show::Desk& desk, std::vector<Channel>& channels) {
 }
 
 /// A number in the unit people think in, and that unit.
-struct Quantity {
-  double value = 0;
-  std::string_view unit;
-};
+Error no_number(const Channel& channel, const std::string& why) {
+  return show::located(
+      make_error(Errc::usage, formatted("{} is not numeric and cannot be plotted: {}", channel.name, why),
+                 "`read` and `watch` show it"),
+      channel.node, channel.target.address);
+}
+
+}  // namespace
+
 std::optional<Quantity> quantity(const Channel& channel, ByteSpan bytes) {
   auto meaning = drive::as_answered(drive::meaning(channel.target, channel.node), bytes.size());
   if (channel.units) channel.units->apply(channel.target, meaning);
@@ -71,19 +71,6 @@ std::optional<Quantity> quantity(const Channel& channel, ByteSpan bytes) {
     return Quantity{familiar->value, familiar->unit};
   return Quantity{drive::scaled(meaning, *value), meaning.unit};
 }
-
-Error no_number(const Channel& channel, const std::string& why) {
-  return show::located(
-      make_error(Errc::usage, formatted("{} is not numeric and cannot be plotted: {}", channel.name, why),
-                 "`read` and `watch` show it"),
-      channel.node, channel.target.address);
-}
-
-double milliseconds(double seconds) { return std::round(seconds * 1000) / 1000; }
-
-Value rounded(double number) { return parse_real(formatted("{:.9g}", number)).value_or(number); }
-
-}  // namespace
 
 Result<Sampler> Sampler::make(show::Desk& desk, std::span<const std::string> names) {
   Sampler out(desk);
@@ -167,6 +154,13 @@ std::vector<Sample> Sampler::take() {
   return out;
 }
 
+show::DecodedValue decoded(const show::Desk& desk, const Channel& channel, ByteSpan bytes) {
+  show::Reading reading{channel.node, channel.target, {}, Bytes{}, channel.bridge};
+  if (channel.units) reading.units = &*channel.units;
+  reading.family = desk.profile != nullptr ? desk.profile : desk.standard;
+  return show::decode_value(reading, bytes);
+}
+
 Result<void> check_number(const Channel& channel) {
   const auto meaning = drive::meaning(channel.target, channel.node);
   if (!meaning.type_known || od::is_integer(meaning.type) || od::is_real(meaning.type)) return {};
@@ -195,148 +189,6 @@ std::vector<Error> failures_of(std::span<const Sample> last) {
     const bool told =
         std::any_of(out.begin(), out.end(), [&](const Error& e) { return e.node == error.node; });
     if (!told) out.push_back(error);
-  }
-  return out;
-}
-
-void ChannelRecord::add(double seconds, const Sample& sample) {
-  by_pdo_ += sample.by_pdo;
-  if (!sample.bytes) {
-    ++failures_;
-    return;
-  }
-  const auto number = quantity(*channel_, *sample.bytes);
-  if (!number) return;
-  series_.unit = number->unit;
-  series_.name = channel_->name;
-  if (channel_->several_nodes) series_.name += formatted(" (node {})", channel_->node);
-  series_.seconds.push_back(seconds);
-  series_.values.push_back(number->value);
-  statistics_.add(number->value);
-  if (is_word_) add_word(seconds, load_le(*sample.bytes), *sample.bytes);
-}
-
-void ChannelRecord::add_word(double seconds, std::uint64_t value, const Bytes& bytes) {
-  constexpr std::size_t kMost = 32;
-  const auto known =
-      std::find_if(words_.begin(), words_.end(), [&](const Word& w) { return w.value == value; });
-  if (known == words_.end() && words_.size() == kMost) {
-    ++other_words_;
-  } else if (known == words_.end()) {
-    words_.push_back({value, bytes, 1, seconds, seconds});
-  } else {
-    ++known->samples;
-    known->last = seconds;
-  }
-}
-
-report::Table sampling_table(std::span<const ChannelRecord> records) {
-  report::Table table;
-  table.columns = {{"node"},
-                   {"index", "", report::Show::json},
-                   {"sub", "", report::Show::json},
-                   {"name"},
-                   {"samples"},
-                   {"by_pdo", "by PDO"},
-                   {"failed"},
-                   {"min"},
-                   {"mean", "", report::Show::json},
-                   {"mean_text", "mean", report::Show::text},
-                   {"max"},
-                   {"unit"}};
-  for (const auto& record : records) {
-    const auto& channel = record.channel();
-    const auto& numbers = record.statistics();
-    const auto meaning = drive::meaning(channel.target, channel.node);
-    const auto number = [&](double value) {
-      if (numbers.count() == 0) return Value();
-      if (!meaning.bits) return rounded(value);
-      const auto word = static_cast<std::uint64_t>(value);
-      return Value(report::Hex{word, static_cast<int>(drive::hex_digits(meaning, word))});
-    };
-    table.rows.push_back({channel.node, channel.target.address.index, channel.target.address.sub,
-                          channel.name, numbers.count(), record.by_pdo(), record.failures(),
-                          number(numbers.least()), numbers.count() == 0 ? Value() : rounded(numbers.mean()),
-                          meaning.bits ? Value() : number(numbers.mean()), number(numbers.greatest()),
-                          report::text_or_null(record.series().unit)});
-  }
-  return table;
-}
-
-show::DecodedValue decoded(const show::Desk& desk, const Channel& channel, ByteSpan bytes) {
-  show::Reading reading{channel.node, channel.target, {}, Bytes{}, channel.bridge};
-  if (channel.units) reading.units = &*channel.units;
-  reading.family = desk.profile != nullptr ? desk.profile : desk.standard;
-  return show::decode_value(reading, bytes);
-}
-
-void add_words(report::Record& out, const show::Desk& desk, std::span<const ChannelRecord> records) {
-  report::Table table;
-  table.columns = {{"node"},
-                   {"index", "", report::Show::json},
-                   {"sub", "", report::Show::json},
-                   {"name"},
-                   {"value"},
-                   {"samples"},
-                   {"first", "first (s)"},
-                   {"last", "last (s)"},
-                   {"meaning", "label", report::Show::text},
-                   {"label", "", report::Show::json}};
-  for (const auto& record : records) {
-    const auto& channel = record.channel();
-    const auto& object = channel.target.address;
-    for (const auto& word : record.words()) {
-      const auto value = decoded(desk, channel, word.bytes);
-      const auto digits = drive::hex_digits(drive::meaning(channel.target, channel.node), word.value);
-      table.rows.push_back({channel.node, object.index, object.sub, channel.name,
-                            report::Hex{word.value, static_cast<int>(digits)}, word.samples,
-                            milliseconds(word.first), milliseconds(word.last),
-                            report::text_or_null(show::label_text(value, desk.chinese)), value.label});
-    }
-    if (record.other_words() > 0)
-      table.rows.push_back({channel.node, object.index, object.sub, channel.name, Value(),
-                            record.other_words(), Value(), Value(), "other values", Value()});
-  }
-  const auto show = table.rows.empty() ? report::Show::json : report::Show::everywhere;
-  out.push_back({"words", std::move(table), show, "values of bit fields"});
-}
-
-std::vector<Series> series_of(std::span<const ChannelRecord> records) {
-  std::vector<Series> out;
-  for (const auto& record : records)
-    if (!record.series().values.empty()) out.push_back(record.series());
-  return out;
-}
-
-std::string no_plot_text(std::span<const Channel> channels, std::string_view option) {
-  const bool none =
-      std::all_of(channels.begin(), channels.end(), [](const Channel& channel) { return channel.is_word(); });
-  return none ? formatted("{}: bit fields are not plotted, and no other object is named", option)
-              : std::string();
-}
-
-std::vector<Series> plotted_series(std::span<const ChannelRecord> records) {
-  std::vector<Series> out;
-  for (const auto& record : records)
-    if (!record.series().values.empty() && !record.channel().is_word()) out.push_back(record.series());
-  return out;
-}
-
-std::string series_csv(std::span<const Series> series) {
-  std::string out = "seconds";
-  for (const auto& entry : series) out += ',' + csv_heading(entry.name, entry.unit);
-  out += '\n';
-  std::map<double, std::vector<std::string>> lines;
-  for (std::size_t i = 0; i < series.size(); ++i)
-    for (std::size_t k = 0; k < series[i].seconds.size(); ++k) {
-      auto& cells = lines[series[i].seconds[k]];
-      cells.resize(series.size());
-      cells[i] = plain_number(series[i].values[k], 12);
-    }
-  for (const auto& [seconds, cells] : lines) {
-    out += formatted("{:.6f}", seconds);
-    for (const auto& cell : cells) out += ',' + cell;
-    out += '\n';
   }
   return out;
 }
