@@ -2,10 +2,10 @@
 
 #include "base/format.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "command/command.hpp"
 #include "drive/parameter_ids.hpp"
 #include "report/catalogue.hpp"
-#include "report/text_kinds.hpp"
 #include "show/object_records.hpp"
 #include "show/records.hpp"
 
@@ -23,7 +23,7 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
   const auto pattern = arguments.text("pattern");
   std::vector<const od::Parameter*> found;
   std::vector<std::string> groups;
-  const bool in_chinese = report::has_chinese(pattern);  // The catalogue is read for these alone.
+  const bool in_chinese = has_chinese(pattern);  // The catalogue is read for these alone.
   for (const auto& parameter : context.profile->parameters) {
     if (!parameter.group.empty() && std::find(groups.begin(), groups.end(), parameter.group) == groups.end())
       groups.push_back(parameter.group);

@@ -94,6 +94,11 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
+bool has_chinese(std::string_view text) {
+  // The first bytes of these characters, which are no other byte of any.
+  return std::any_of(text.begin(), text.end(), [](char c) { return c >= '\xE3' && c <= '\xE9'; });
+}
+
 std::size_t columns(char32_t c) {
   if (is_in(kCombining, c)) return 0;
   return is_in(kWide, c) ? 2 : 1;

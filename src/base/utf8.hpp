@@ -23,6 +23,9 @@ void append_utf8(char32_t character, std::string& out);
 /// Whether the text is UTF-8 throughout.
 bool is_utf8(std::string_view text);
 
+/// Whether a character of the text is Chinese, or one of the marks of Chinese text: U+3000 to U+9FFF.
+bool has_chinese(std::string_view text);
+
 /// Columns the character takes on a terminal: two for East Asian wide ones, none for combining ones.
 std::size_t columns(char32_t c);
 

@@ -5,10 +5,10 @@
 
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "report/chinese_marks.hpp"
 #include "report/chinese_value.hpp"
 #include "report/json_writer.hpp"
-#include "report/text_kinds.hpp"
 #include "show/records.hpp"
 
 namespace servoctl::cli {
@@ -22,7 +22,7 @@ using report::Value;
 /// A line for people. What is in Chinese already is not looked at again: words that one types look like
 /// English.
 std::string remark(std::string_view lead, std::string_view text, bool told) {
-  if (!told || !report::has_chinese(text)) return std::string(lead) + printable(text) + "\n";
+  if (!told || !has_chinese(text)) return std::string(lead) + printable(text) + "\n";
   return std::string(report::chinese_word(lead)) + printable(report::chinese_marks(text)) + "\n";
 }
 

@@ -4,6 +4,7 @@
 #include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "base/toml_text.hpp"
 #include "drive/file_identity.hpp"
 #include "drive/new_family.hpp"
 #include "drive/profile_sheet.hpp"
@@ -12,22 +13,15 @@
 namespace servoctl::drive {
 namespace {
 
-/// A TOML string; what would move the cursor or hide is written out.
-std::string toml_text(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : printable(text)) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
+/// What would move the cursor or hide is written out.
+std::string printable_toml(std::string_view text) { return toml_text(printable(text)); }
 
 std::string mark_text(const IdentityMark& mark) {
   const auto object = formatted("0x{:04X}:{:02X}", mark.object.index, mark.object.sub);
   const std::string_view soft = mark.soft ? ", soft = true" : "";
   return mark.text.empty()
              ? formatted("{{ object = \"{}\", value = 0x{:08X}{} }}", object, mark.value, soft)
-             : formatted("{{ object = \"{}\", text = {}{} }}", object, toml_text(mark.text), soft);
+             : formatted("{{ object = \"{}\", text = {}{} }}", object, printable_toml(mark.text), soft);
 }
 
 std::string head(const od::EdsFile& sheet, std::string_view source, const NewFamily& family) {
@@ -38,8 +32,8 @@ std::string head(const od::EdsFile& sheet, std::string_view source, const NewFam
       "format = 1\nfamily = \"{}\"\nparent = \"cia402\"\nvendor = {}\nname = {}\n"
       "# name_zh = \"\"\n",
       printable(source), family.name, family.name,
-      toml_text(device.vendor_name.empty() ? "unknown" : device.vendor_name),
-      toml_text(device.product_name.empty() ? family.name : device.product_name));
+      printable_toml(device.vendor_name.empty() ? "unknown" : device.vendor_name),
+      printable_toml(device.product_name.empty() ? family.name : device.product_name));
 }
 
 std::string identity(const od::EdsFile& sheet, NewFamily& family) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/format.hpp"
+#include "base/toml_text.hpp"
 #include "session/pdo_setup.hpp"
 #include "settings/backup_formats.hpp"
 #include "show/pdo_report.hpp"
@@ -68,18 +69,6 @@ Result<void> assign_all(const drive::Profile& profile, const PresentPdos& presen
       if (const auto done = assign_pdo(profile, present, out.pdos[i], true, out.assignments); !done)
         return of(recipes[i], done.error());
   return {};
-}
-
-std::string toml_text(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < ' ' || c == 0x7F)
-      out += formatted("\\u{:04X}", static_cast<unsigned char>(c));
-    else
-      out += c;
-  }
-  return out + '"';
 }
 
 std::string fields(const PdoRecipe& recipe, std::string_view begin, std::string_view separator,

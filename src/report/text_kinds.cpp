@@ -33,12 +33,6 @@ bool has_letters(std::string_view text) {
                      [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; });
 }
 
-bool has_chinese(std::string_view text) {
-  return std::any_of(text.begin(), text.end(), [](char c) {
-    return static_cast<unsigned char>(c) >= 0xE3 && static_cast<unsigned char>(c) <= 0xE9;
-  });
-}
-
 bool is_name(std::string_view text) {
   const bool quoted = text.size() > 2 && text.starts_with('`') && text.find('`', 1) == text.size() - 1;
   return !text.empty() && (quoted || text.find(' ') == std::string_view::npos);

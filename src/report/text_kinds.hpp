@@ -9,7 +9,6 @@
 namespace servoctl::report {
 
 bool has_letters(std::string_view text);
-bool has_chinese(std::string_view text);
 
 /// `json`, `` `fault show` ``: without blanks, or in backticks.
 bool is_name(std::string_view text);

@@ -3,6 +3,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "base/utf8.hpp"
 #include "report/catalogue.hpp"
 #include "report/chinese_marks.hpp"
 #include "report/text_kinds.hpp"

@@ -7,11 +7,11 @@
 #include "base/format.hpp"
 #include "base/printable.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "command/prompt_words.hpp"
 #include "command/registry.hpp"
 #include "drive/topics.hpp"
 #include "report/catalogue.hpp"
-#include "report/text_kinds.hpp"
 #include "show/explanation.hpp"
 
 namespace servoctl::cli {
@@ -89,7 +89,7 @@ std::vector<Candidate> Candidates::take() {
 
 /// Names of data are in Chinese already.
 std::string Candidates::told(const std::string& english) const {
-  return chinese_ && !report::has_chinese(english) ? report::in_chinese(english) : english;
+  return chinese_ && !has_chinese(english) ? report::in_chinese(english) : english;
 }
 
 bool Candidates::fits(std::string_view word) const { return starts_with_nocase(word, begun_); }

@@ -4,13 +4,13 @@
 
 #include "base/format.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "cli/terminal/candidates.hpp"
 #include "drive/naming.hpp"
 #include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "drive/unit.hpp"
 #include "report/catalogue.hpp"
-#include "report/text_kinds.hpp"
 #include "show/pdo_check.hpp"
 
 namespace servoctl::cli {
@@ -97,7 +97,7 @@ void Candidates::add_objects() {
       if (known->parameter(entry.address) == nullptr && may_stand(entry))
         add(drive::entry_name(object, entry),
             address_of(entry.address, object.entries.size() == 1) + (chinese_ ? " " + entry.name_zh : ""));
-  if (report::has_chinese(begun_))
+  if (has_chinese(begun_))
     for (const auto& object : known->dictionary.objects())
       for (const auto& entry : object.entries)
         if (known->parameter(entry.address) == nullptr && may_stand(entry))
@@ -126,7 +126,7 @@ void Candidates::add_panel_parameters(bool also_placed) {
     const auto* entry = mapped_ && parameter.object ? known->dictionary.find(*parameter.object) : nullptr;
     if (mapped_ && (entry == nullptr || !may_stand(*entry))) continue;
     add(parameter.id, name_in(chinese_, parameter.name, parameter.name_zh));
-    if (report::has_chinese(begun_)) add(parameter.name_zh, parameter.id);
+    if (has_chinese(begun_)) add(parameter.name_zh, parameter.id);
   }
   begin_group(group);
 }
@@ -219,7 +219,7 @@ void Candidates::add_words_of(const command::Command& command, const command::Pa
   if (const auto* known = of_groups ? profile() : nullptr; known != nullptr)
     for (const auto& one : known->parameters) {
       add(one.group, "group of parameters");
-      if (is("param list", "pattern") && report::has_chinese(begun_))
+      if (is("param list", "pattern") && has_chinese(begun_))
         add(report::chinese_word(one.group), "group of parameters");
     }
 }
