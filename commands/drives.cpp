@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "base/format.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
@@ -16,15 +14,9 @@ constexpr Parameter kDrivesParameters[] = {
     {.name = "family", .help = "show the rules of this family", .kind = Kind::family},
 };
 
-std::size_t errors_in(const drive::Family& family, std::span<const std::filesystem::path> folders) {
-  const auto found = drive::mistakes_of(family, folders);
-  return static_cast<std::size_t>(std::count_if(
-      found.begin(), found.end(), [](const drive::Mistake& mistake) { return mistake.breaks; }));
-}
-
 std::vector<report::Value> row_of(Context& context, const drive::Family& family) {
   const auto rules = drive::load_rules(family);
-  const auto errors = errors_in(family, context.drive_folders);
+  const auto errors = drive::count_errors(drive::mistakes_of(family, context.drive_folders));
   if (!rules && rules.error().code == Errc::refused)
     context.notices.push_back(formatted("{}; {}", rules.error().message, rules.error().hint));
   else if (errors > 0)

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <system_error>
 
 #include "base/format.hpp"
@@ -78,8 +77,7 @@ Result<report::Value> run_drives_check(Context& context, const Arguments& argume
   report::List out;
   for (const auto& family : checked->families) {
     const auto found = drive::mistakes_of(family, checked->folders);
-    const auto mistakes = static_cast<std::size_t>(std::count_if(
-        found.begin(), found.end(), [](const drive::Mistake& mistake) { return mistake.breaks; }));
+    const auto mistakes = drive::count_errors(found);
     out.emplace_back(family_record(family, found, mistakes));
     if (mistakes > 0)
       context.errors.push_back(make_error(

@@ -6,6 +6,7 @@
 #include "base/signal_wait.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
+#include "drive/family_files.hpp"
 #include "drive/file_identity.hpp"
 #include "drive/new_family.hpp"
 #include "drive/standard_objects.hpp"
@@ -157,18 +158,15 @@ Result<report::Value> run_drives_new(Context& context, const Arguments& argument
   const auto folder = drive::own_families_folder();
   if (!folder) return fail(folder.error());
   const auto& family = made->family;
-  auto place = *folder / family.name;
-  if (context.dry_run) {
-    context.notices.push_back(formatted("dry run: {} is not written", place.string()));
-  } else {
-    const auto written = drive::write_family(family, *folder, context.drive_folders);
-    if (!written) return fail(written.error());
-  }
+  const auto make = context.dry_run ? drive::try_family : drive::write_family;
+  const auto place = make(family, *folder, context.drive_folders);
+  if (!place) return fail(place.error());
+  if (context.dry_run) context.notices.push_back(formatted("dry run: {} is not written", place->string()));
   std::vector<std::string> files;
   for (const auto& [name, content] : family.files) files.push_back(name);
   return report::Value(report::Record{
       {"family", family.name},
-      {"folder", place.string()},
+      {"folder", place->string()},
       {"files", list_of(files)},
       {"entries", made->entries},
       {"parameters", made->parameters},
@@ -195,10 +193,11 @@ const Command kDrivesNew{
         "overwritten. What is written passes `drives check`. Tables are read as spreadsheets save them: English or "
         "Chinese headings in any order, commas, semicolons or tabs, UTF-8 or GBK. --params needs a column with the "
         "parameter numbers (id, No.); object, type, access, default and range that it does not have come from the "
-        "data sheet, and where type or access contradict it, the data sheet is used, with a notice. --faults needs a "
-        "column with names; codes of 603Fh are written 0x8611 or 8611h. Nothing is guessed: a cell that can be read "
-        "in two ways is an error with its line and what to write; a column that is not understood is left out with a "
-        "notice. The rules are never `certain`: a person decides that. --dry-run writes nothing.",
+        "data sheet, and where type, access or a wider limit contradict it, the data sheet is used, with a notice. If "
+        "a parameter has a scale, a wider limit or another default is an error. --faults needs a column with names; "
+        "codes of 603Fh are written 0x8611 or 8611h. Nothing is guessed: a cell that can be read in two ways is an "
+        "error with its line and what to write; a column that is not understood is left out with a notice. The rules "
+        "are never `certain`: a person decides that. --dry-run checks all this and writes nothing.",
     .parameters = kDrivesNewParameters,
     .examples = kDrivesNewExamples,
     .needs = Needs::nothing,

@@ -95,7 +95,7 @@ struct Cabinet {
 };
 
 /// Reads a cabinet file. Errc::file with file, line and column for a syntax error, an unknown key, a value of
-/// the wrong kind or out of its range, a name that is none or stands twice, a bus or a group that is not
+/// the wrong kind or out of its range, a name that is none or appears twice, a bus or a group that is not
 /// there, two axes at one place. Families and what they know are not looked at: see check_cabinet().
 Result<Cabinet> parse_cabinet(std::string_view toml, const std::filesystem::path& file);
 Result<Cabinet> read_cabinet(const std::filesystem::path& file);

@@ -17,7 +17,7 @@ bool is_unit_assumed(const Target& target) {
 }
 
 bool leaves_units_open(const Profile& profile) {
-  return profile.is_generic() || profile.stands_on(kGenericFamily);
+  return profile.is_generic() || profile.descends_from(kGenericFamily);
 }
 
 }  // namespace servoctl::drive

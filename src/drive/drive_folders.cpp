@@ -1,4 +1,4 @@
-// Where the data of the families stand, which of them are trusted, and whose parents they are.
+// Where the data of the families are, which of them are trusted, and whose parents they are.
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -45,10 +45,7 @@ std::vector<fs::path> named_folders() {
 const std::vector<fs::path>& found_folders() {
   static const auto found = [] {
     std::vector<fs::path> out;
-    if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
-      out.push_back(fs::path(config) / "servoctl/drives");
-    else if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-      out.push_back(fs::path(home) / ".config/servoctl/drives");
+    if (auto users = own_families_folder()) out.push_back(std::move(*users));
     if (auto own = own_folder()) out.push_back(std::move(*own));
     return out;
   }();
@@ -94,6 +91,14 @@ std::string text_of_rules(const Family& family) {
 }
 
 }  // namespace
+
+Result<fs::path> own_families_folder() {
+  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
+    return fs::path(config) / "servoctl/drives";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+    return fs::path(home) / ".config/servoctl/drives";
+  return fail(Errc::usage, "there is no folder for your own families", "set HOME or XDG_CONFIG_HOME");
+}
 
 std::vector<fs::path> drive_folders() {
   auto out = named_folders();

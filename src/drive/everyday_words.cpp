@@ -65,7 +65,7 @@ std::vector<EverydayWords> read_everyday_words(std::string_view csv, std::string
     if (words.name.empty()) wrong(row.line, "'thing' is missing");
     if (!row.cells[2].empty() && !words.absent) wrong(row.line, "'manual' is none, or empty");
     if (std::any_of(out.begin(), out.end(), [&](const auto& each) { return each.name == words.name; }))
-      wrong(row.line, formatted("'{}' stands twice", words.name));
+      wrong(row.line, formatted("'{}' appears twice", words.name));
     for (const auto word : split(std::string_view(row.cells[1]), ';'))
       if (const auto bare = trim(word); !bare.empty()) words.words.emplace_back(bare);
     out.push_back(std::move(words));

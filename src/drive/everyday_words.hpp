@@ -21,7 +21,7 @@ struct EverydayWords {
 };
 
 /// Reads `<family>.words.csv` (docs/drive-data.md). Errc::file with file and line for an unknown column or
-/// cell, a thing without a name, one that stands twice.
+/// cell, a thing without a name, one that appears twice.
 Result<std::vector<EverydayWords>> parse_everyday_words(std::string_view csv, std::string_view file);
 /// The same; adds everything that is wrong to `errors`.
 std::vector<EverydayWords> read_everyday_words(std::string_view csv, std::string_view file,

@@ -9,6 +9,10 @@ namespace servoctl::drive {
 
 struct Family;
 
+/// The user's own families: `$XDG_CONFIG_HOME/servoctl/drives`, `~/.config/servoctl/drives`. Errc::usage if
+/// neither variable is set.
+Result<std::filesystem::path> own_families_folder();
+
 /// Errc::file, naming the key, where the parents of a family lead back to it or to one of them.
 Result<void> check_parents(const Family& family, std::span<const std::filesystem::path> folders);
 

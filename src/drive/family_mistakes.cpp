@@ -160,7 +160,7 @@ class FamilyCheck {
       profile_.parameters = od::read_parameters(*text, name_of(".params.csv"), errors_);
       profile_.made_of_dictionary = false;
       refuse_same_ids(profile_.parameters, name_of(".params.csv"), errors_);
-      for (const auto& parameter : profile_.parameters) hold_against_sheet(parameter);
+      for (const auto& parameter : profile_.parameters) compare_with_sheet(parameter);
       for (auto& one : shadowing_ids(profile_.parameters, profile_.dictionary, name_of(".params.csv")))
         out_.push_back(
             {name_of(".params.csv"), one.line, false, std::move(one.message), std::move(one.hint)});
@@ -192,7 +192,7 @@ class FamilyCheck {
   }
 
   /// The wire has what the data sheet says: a parameter of another size would be written cut off.
-  void hold_against_sheet(const od::Parameter& parameter) {
+  void compare_with_sheet(const od::Parameter& parameter) {
     if (!has_sheet_ || !parameter.object) return;
     const auto name = name_of(".params.csv");
     const auto* entry = profile_.dictionary.find(*parameter.object);
@@ -232,8 +232,7 @@ class FamilyCheck {
 
   /// What only the whole family shows.
   void whole() {
-    const auto breaks = [](const Mistake& mistake) { return mistake.breaks; };
-    if (std::any_of(out_.begin(), out_.end(), breaks)) return;
+    if (count_errors(out_) > 0) return;
     const auto loaded = load_profile(*family_, folders_);
     if (!loaded)
       out_.push_back({family_->stem.filename().string() + ".*", loaded.error().line, true,
@@ -254,6 +253,11 @@ class FamilyCheck {
 
 std::vector<Mistake> mistakes_of(const Family& family, std::span<const fs::path> folders) {
   return FamilyCheck(family, folders).take();
+}
+
+std::size_t count_errors(std::span<const Mistake> mistakes) {
+  return static_cast<std::size_t>(
+      std::count_if(mistakes.begin(), mistakes.end(), [](const Mistake& mistake) { return mistake.breaks; }));
 }
 
 }  // namespace servoctl::drive

@@ -23,6 +23,9 @@ struct Mistake {
 /// that is no TOML only the first fault of its form is known, and nothing of what it says.
 std::vector<Mistake> mistakes_of(const Family& family, std::span<const std::filesystem::path> folders);
 
+/// How many of them break the family.
+std::size_t count_errors(std::span<const Mistake> mistakes);
+
 /// Adds an error for every name in a rules file that is neither a parameter nor an object of the profile.
 void check_rule_names(std::string_view toml, std::string_view file, const Profile& profile,
                       std::vector<Error>& errors);

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <tuple>
 
 #include "base/csv.hpp"
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "od/table_row.hpp"
 
 namespace servoctl::drive {
@@ -20,10 +23,22 @@ Error bad_cell(std::string_view file, std::uint32_t line, std::string_view colum
   return file_error(file, line, formatted("column {}: '{}' is not {}", column, cell, expected));
 }
 
+/// `0x2310`, `2310h`. Bare digits could be decimal or hexadecimal.
 std::optional<std::uint16_t> parse_code(std::string_view text) {
-  const auto code = parse_integer(text);
+  const bool is_marked = starts_with_nocase(text, "0x") || lower(text).ends_with('h');
+  const auto code = is_marked ? parse_integer(text) : std::nullopt;
   if (!code || code->negative || code->magnitude > 0xFFFF) return std::nullopt;
   return static_cast<std::uint16_t>(code->magnitude);
+}
+
+/// With what to write in place of bare digits.
+Error bad_code(std::string_view file, std::uint32_t line, std::string_view text) {
+  auto out = bad_cell(file, line, "code", text, "a hexadecimal code of 16 bits, such as 0x8130");
+  constexpr std::size_t kDigits = 4;
+  if (const auto decimal = parse_digits(text, 10); decimal && text.size() <= kDigits)
+    out.hint =
+        formatted("write 0x{} if these digits are hexadecimal, 0x{:04X} if they are decimal", text, *decimal);
+  return out;
 }
 
 std::optional<Fault::Kind> parse_kind(std::string_view text) {
@@ -62,7 +77,7 @@ Fault read_fault(const CsvTable& table, const CsvTable::Row& row, std::string_vi
   Fault fault;
   if (const auto text = cell("code"); !text.empty()) {
     fault.code = parse_code(text);
-    if (!fault.code) refuse("code", "a code of 16 bits, such as 0x8130");
+    if (!fault.code) errors.push_back(bad_code(file, row.line, text));
   }
   const auto kind_text = cell("kind");
   const auto kind = kind_text.empty() ? Fault::Kind::fault : parse_kind(kind_text);
@@ -87,6 +102,28 @@ Fault read_fault(const CsvTable& table, const CsvTable::Row& row, std::string_vi
   return fault;
 }
 
+/// A panel text or a code with two meanings could not be explained.
+class KnownFaults {
+ public:
+  KnownFaults(std::string_view file, std::vector<Error>& errors) : file_(file), errors_(&errors) {}
+
+  bool add(const Fault& fault, std::uint32_t line) {
+    const auto code = fault.code ? formatted("0x{:04X}", *fault.code) : std::string();
+    const auto& shown = fault.panel.empty() ? code : fault.panel;
+    const auto [first, is_new] = lines_.emplace(std::tuple(code, fault.extra, fault.panel), line);
+    if (is_new || shown.empty()) return true;
+    errors_->push_back(file_error(
+        file_, line, formatted("{} is in line {} as well", shown, first->second),
+        "write all causes of a fault into one row, or tell the rows apart by code, extra or panel"));
+    return false;
+  }
+
+ private:
+  std::string_view file_;
+  std::vector<Error>* errors_;
+  std::map<std::tuple<std::string, std::string, std::string>, std::uint32_t> lines_;
+};
+
 }  // namespace
 
 std::vector<Fault> read_faults(std::string_view csv, std::string_view file, std::vector<Error>& errors) {
@@ -95,10 +132,11 @@ std::vector<Fault> read_faults(std::string_view csv, std::string_view file, std:
   std::vector<Fault> faults;
   constexpr std::string_view kNeeded[] = {"name"};
   if (!table.has_columns(kNeeded, file, errors)) return faults;
+  KnownFaults known(file, errors);
   for (const auto& row : table.rows) {
     const auto before = errors.size();
     auto fault = read_fault(table, row, file, errors);
-    if (errors.size() == before) faults.push_back(std::move(fault));
+    if (errors.size() == before && known.add(fault, row.line)) faults.push_back(std::move(fault));
   }
   return faults;
 }

@@ -33,7 +33,7 @@ struct Fault {
 std::string_view name(Fault::Kind kind);  ///< `fault warning status`
 
 /// Reads `<family>.faults.csv`; of its columns only `name` is needed. Errc::file with file and line for a bad
-/// cell or an unknown column: the first of them.
+/// cell, a code without `0x` or `h`, a fault that appears twice, or an unknown column: the first of them.
 Result<std::vector<Fault>> parse_faults(std::string_view csv, std::string_view file);
 /// The same of all rows that are right; adds everything that is wrong to `errors`.
 std::vector<Fault> read_faults(std::string_view csv, std::string_view file, std::vector<Error>& errors);

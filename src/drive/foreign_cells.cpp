@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
 
 #include "base/format.hpp"
 #include "base/number.hpp"
@@ -73,9 +74,46 @@ bool is_unit_word(std::string_view text) {
   return std::none_of(text.begin(), text.end(), is_cell_digit) && text.find('^') == std::string_view::npos;
 }
 
-/// The first three letters of the months, as spreadsheets write them.
-constexpr std::string_view kMonths[] = {"jan", "feb", "mar", "apr", "may", "jun",
-                                        "jul", "aug", "sep", "oct", "nov", "dec"};
+constexpr std::string_view kMonths[] = {"january",   "february", "march",    "april",
+                                        "may",       "june",     "july",     "august",
+                                        "september", "october",  "november", "december"};
+
+bool is_month(std::string_view word) {
+  constexpr std::size_t kShortest = 3;
+  return word.size() >= kShortest && std::any_of(std::begin(kMonths), std::end(kMonths),
+                                                 [&](auto month) { return month.starts_with(lower(word)); });
+}
+
+/// The words of `02. Jan 2026`; empty where they are joined by anything but blanks and `.-/`.
+std::vector<std::string_view> date_words(std::string_view text) {
+  std::vector<std::string_view> out;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto end = std::min(text.find_first_of(" .-/", at), text.size());
+    if (end > at) out.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  return out;
+}
+
+/// `2-Jan`, `02. Jan 2026`, `2026-01-02`, `1/2/2026`.
+bool is_date(std::string_view text) {
+  const auto words = date_words(text);
+  const auto is_number = [](std::string_view word) { return parse_digits(word, 10).has_value(); };
+  const auto months = std::count_if(words.begin(), words.end(), is_month);
+  const auto numbers = std::count_if(words.begin(), words.end(), is_number);
+  constexpr std::size_t kParts = 3;
+  if (words.size() < 2 || words.size() > kParts || months + numbers != std::ssize(words)) return false;
+  if (months > 0) return months == 1;
+  constexpr std::size_t kYear = 4;
+  return words.size() == kParts && (words.front().size() == kYear || words.back().size() == kYear);
+}
+
+/// `2.00E+05`, `2.00E-05`.
+bool is_rounded_number(std::string_view text) {
+  const auto exponent = text.find_first_of("eE");
+  if (exponent == std::string_view::npos || !parse_real(text)) return false;
+  return text.find('+') == exponent + 1 || text.substr(0, exponent).find('.') != std::string_view::npos;
+}
 
 }  // namespace
 
@@ -85,17 +123,10 @@ bool has_decimal_comma(std::string_view text) {
   return false;
 }
 
-bool is_spreadsheet_date(std::string_view text) {
-  const auto parts = split(text, '-');
-  const auto is_number = [](std::string_view part) { return parse_digits(part, 10).has_value(); };
-  const auto is_month = [](std::string_view part) {
-    return std::find(std::begin(kMonths), std::end(kMonths), lower(part)) != std::end(kMonths);
-  };
-  if (parts.size() == 2 &&
-      ((is_number(parts[0]) && is_month(parts[1])) || (is_month(parts[0]) && is_number(parts[1]))))
-    return true;
+bool is_changed_by_spreadsheet(std::string_view text) {
+  if (is_date(text) || is_rounded_number(text)) return true;
   const auto month = text.find("月");
-  return month != std::string_view::npos && text.ends_with("日") && is_number(text.substr(0, month));
+  return month != std::string_view::npos && text.ends_with("日") && is_cell_digit(text.front());
 }
 
 std::optional<std::pair<std::string, std::string>> family_unit(std::string_view text) {
@@ -155,12 +186,25 @@ std::string with_separators(std::string list) {
   return list;
 }
 
-/// Whether a label may be more than one: `off1:on`, `off /`.
+/// `A` and `0x1F`, which may be the number of a further entry; `dec` and `add` are words.
+bool is_hexadecimal_word(std::string_view word) {
+  constexpr std::size_t kDigits = 2;
+  const bool prefix = word.starts_with("0x") || word.starts_with("0X");
+  if (prefix) word.remove_prefix(2);
+  return !word.empty() && (prefix || word.size() <= kDigits) &&
+         std::all_of(word.begin(), word.end(), is_hexadecimal_cell_digit);
+}
+
+/// Whether a label may be more than one: `off1:on`, `on A:both`, `off /`.
 bool is_doubtful_label(std::string_view label) {
   if (label.ends_with('/') || label.ends_with('|') || label.ends_with(',')) return true;
-  for (std::size_t at = 1; at < label.size(); ++at)
-    if ((label[at] == ':' || label[at] == '=') && is_cell_digit(trim(label.substr(0, at)).back()))
-      return true;
+  for (std::size_t at = 1; at < label.size(); ++at) {
+    if (label[at] != ':' && label[at] != '=') continue;
+    const auto before = trim(label.substr(0, at));
+    const auto blank = before.find_last_of(" ,/");
+    const auto word = blank == std::string_view::npos ? before : before.substr(blank + 1);
+    if (is_cell_digit(before.back()) || is_hexadecimal_word(word)) return true;
+  }
   return false;
 }
 
@@ -199,17 +243,14 @@ ForeignObject family_object(std::string_view index, std::string_view sub) {
   // "2001-01h" is index and sub-index as well.
   std::replace(text.begin(), text.end(), '-', ':');
   sub = trim(sub);
-  if (!sub.empty() && parse_object_address(text) && text.find_first_of(":.") == std::string::npos)
-    text += formatted(":{}", sub);
-  else if (!sub.empty())
-    return {.text = formatted("{}:{}", index, sub), .address = {}, .has_sub = true, .doubtful = {}};
-  ForeignObject out{.text = std::string(trim(index)),
-                    .address = parse_object_address(text),
-                    .has_sub = true,
-                    .doubtful = {}};
+  ForeignObject out;
+  out.text = sub.empty() ? std::string(trim(index)) : formatted("{}:{}", index, sub);
+  const bool index_alone = parse_object_address(text + ":0").has_value();
+  if (!sub.empty() && !index_alone) return out;
+  if (!sub.empty()) text += formatted(":{}", sub);
+  out.has_sub = !sub.empty() || !index_alone;
+  out.address = parse_object_address(text);
   if (!out.address) return out;
-  const auto only_index = parse_object_address(text + ":0");
-  out.has_sub = !only_index;
   if (const auto doubt = doubtful_sub(text)) out.doubtful = *doubt;
   out.text = formatted("0x{:04X}:{:02X}", out.address->index, out.address->sub);
   return out;

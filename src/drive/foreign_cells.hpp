@@ -18,8 +18,8 @@ std::optional<std::pair<std::string, std::string>> family_unit(std::string_view 
 std::optional<std::pair<std::string, std::string>> family_range(std::string_view text);
 /// `0,5` or `1,000`: with a comma between digits, a number may be either.
 bool has_decimal_comma(std::string_view text);
-/// `2-Jan`, `1月2日`: what a spreadsheet makes of the number 1-02 of a parameter.
-bool is_spreadsheet_date(std::string_view text);
+/// `2-Jan`, `1月2日`, `2026-01-02`, `2.00E+05`: what a spreadsheet makes of the numbers 1-02 and 2E05.
+bool is_changed_by_spreadsheet(std::string_view text);
 /// `0: off, 1: on` or `0：关 1：开` as `0=off;1=on`; empty for what is no such list, or may be another one.
 std::optional<std::string> family_labels(std::string_view text);
 /// An object as a table names it.

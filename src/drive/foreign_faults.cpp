@@ -1,11 +1,11 @@
 // A table of faults as people have it, made into one of a family.
 #include <algorithm>
 #include <array>
-#include <map>
 
 #include "base/csv.hpp"
 #include "base/format.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "drive/fault.hpp"
 #include "drive/foreign_cells.hpp"
 #include "drive/foreign_heading.hpp"
@@ -55,10 +55,6 @@ constexpr auto kFaultHeadings = std::to_array<Heading>({{"code", kCodeExact, kCo
 
 constexpr std::string_view kFaultHeader = "code,extra,panel,kind,resettable,name,name_zh,check,check_zh";
 
-bool has_chinese(std::string_view text) {
-  return std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0xE3; });
-}
-
 struct FaultRow {
   std::uint32_t line = 0;
   std::string code, extra, panel, kind, resettable, name, name_zh, check, check_zh;
@@ -97,15 +93,11 @@ class FaultConversion {
     for (const auto& cells : table_->rows())
       has_codes_ = has_codes_ || family_code(table_->cell(cells, "code"), false).has_value();
     for (const auto& cells : table_->rows()) take(cells);
-    refuse_twice();
     if (displayed_line_ != 0)
       out_.notices.push_back(formatted(
           "{}:{}: what column '{}' has without 0x or h is taken as what the panel shows; codes of 603Fh are "
           "written 0x8611",
           file_, displayed_line_, table_->heading("code")));
-    if (bare_line_ != 0)
-      out_.notices.push_back(formatted("{}:{}: codes in column '{}' without 0x or h are taken as hexadecimal",
-                                       file_, bare_line_, table_->heading("code")));
     auto aligned = std::string(kFaultHeader) + "\n";
     out_.csv = aligned;
     std::uint32_t line = 2;
@@ -148,14 +140,13 @@ class FaultConversion {
   /// The code of 603Fh, or what the panel shows where people put that into the column of codes.
   void take_code(FaultRow& row, const std::string& text) {
     if (text.empty()) return;
-    if (const auto code = family_code(text, canopen_)) {
+    if (const auto code = family_code(text, false)) {
       row.code = *code;
-      if (bare_line_ == 0 && !family_code(text, false)) bare_line_ = row.line;
     } else if (canopen_) {
-      wrong(row.line, formatted("'{}' is no code of 603Fh", text), "write four hexadecimal digits: 0x8611");
+      row.code = text;  // The reader says what is wrong.
     } else if (!row.panel.empty()) {
       wrong(row.line, formatted("'{}' is no code of 603Fh, and the panel shows '{}'", text, row.panel),
-            "write the code as 0x8611, or head the column 603Fh");
+            "write the code as 0x8611");
     } else if (may_be_code(text)) {
       wrong(row.line, formatted("'{}' may be a code of 603Fh or what the panel shows", text),
             "write one code in a row, as 0x8611; write what the panel shows into a column 'panel'");
@@ -170,18 +161,6 @@ class FaultConversion {
     return lower(text).find("0x") != std::string::npos || (has_codes_ && family_code(text, true).has_value());
   }
 
-  /// One of the panel or a code with two meanings could not be explained.
-  void refuse_twice() {
-    std::map<std::string, const FaultRow*> known;
-    for (const auto& row : rows_) {
-      const auto [first, is_new] = known.emplace(row.code + "," + row.extra + "," + row.panel, &row);
-      const auto& shown = row.panel.empty() ? row.code : row.panel;
-      if (is_new || shown.empty()) continue;
-      wrong(row.line, formatted("{} is in line {} as well", shown, first->second->line),
-            "write all causes of a fault into one row, or tell the rows apart by code, extra or panel");
-    }
-  }
-
   void wrong(std::uint32_t line, const std::string& what, std::string hint) {
     errors_->push_back(file_error(file_, line, what, std::move(hint)));
   }
@@ -193,7 +172,6 @@ class FaultConversion {
   bool has_codes_ = false;  ///< Some are written with 0x or h.
   std::vector<FaultRow> rows_;
   std::uint32_t displayed_line_ = 0;
-  std::uint32_t bare_line_ = 0;
   ConvertedTable out_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "base/format.hpp"
 #include "base/text.hpp"
@@ -107,6 +108,17 @@ bool is_harmless(std::string_view heading) {
   return true;
 }
 
+/// The first character that folded_heading() leaves out and that may say something of the numbers: `%`.
+std::string_view unread_mark(std::string_view heading) {
+  constexpr std::string_view kPlain = " .:_-\t\r\n\"'()[]";
+  const auto at = std::find_if(heading.begin(), heading.end(), [&](char c) {
+    const bool is_ascii = static_cast<unsigned char>(c) < 0x80;
+    return is_ascii && std::isalnum(static_cast<unsigned char>(c)) == 0 && kPlain.find(c) == kPlain.npos;
+  });
+  return at == heading.end() ? std::string_view()
+                             : heading.substr(static_cast<std::size_t>(at - heading.begin()), 1);
+}
+
 }  // namespace
 
 std::string folded_heading(std::string_view text) {
@@ -208,6 +220,10 @@ void ForeignTable::check_headings(std::span<const Heading> headings, std::string
     else if (number && has_bracket(text) && !is_harmless(text))
       errors.push_back(file_error(file, heading_line_,
                                   formatted("'{}': text in brackets over numbers is not read", text),
+                                  "take it out of the heading; write units into a column 'unit'"));
+    else if (const auto mark = unread_mark(text); number && !mark.empty())
+      errors.push_back(file_error(file, heading_line_,
+                                  formatted("'{}': the mark {} over numbers is not read", text, mark),
                                   "take it out of the heading; write units into a column 'unit'"));
   }
 }

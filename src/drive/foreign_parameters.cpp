@@ -5,6 +5,7 @@
 #include "base/format.hpp"
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 #include "drive/foreign_cells.hpp"
 #include "drive/foreign_heading.hpp"
 #include "drive/foreign_row.hpp"
@@ -17,10 +18,6 @@
 namespace servoctl::drive {
 namespace {
 
-bool is_chinese(std::string_view text) {
-  return std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0xE3; });
-}
-
 class ParameterConversion {
  public:
   ParameterConversion(const ForeignTable& table, std::string_view file, const od::Dictionary& dictionary,
@@ -32,8 +29,8 @@ class ParameterConversion {
 
   ConvertedTable run() {
     for (const auto& row : table_->rows()) take(row);
-    settle_numbers(rows_, file_, *errors_, out_.notices);
-    for (auto& row : rows_) add_from_sheet(row, file_, out_.notices);
+    if (!settle_numbers(rows_, file_, *errors_, out_.notices)) return std::move(out_);
+    for (auto& row : rows_) add_from_sheet(row, file_, *errors_, out_.notices);
     note_unreachable();
     check();
     out_.rows = rows_.size();
@@ -61,9 +58,11 @@ class ParameterConversion {
     if (row.id.empty() && cell("object").empty())
       return wrong(row.line, "a row without a parameter number",
                    "write the number in each row, in one cell all that belongs to it; or remove the row");
-    if (is_spreadsheet_date(row.id))
+    if (is_changed_by_spreadsheet(row.id))
       return wrong(
-          row.line, formatted("'{}' is a date, perhaps made of a parameter number by a spreadsheet", row.id),
+          row.line,
+          formatted("'{}' is a date or a rounded number, perhaps made of a parameter number by a spreadsheet",
+                    row.id),
           "format the column as text before the table is pasted, and write the number as the manual does");
     object(row, cell("object"), cell("sub"));
     if (row.id.empty()) row.id = row.object;
@@ -184,10 +183,10 @@ class ParameterConversion {
     row.name_zh = cell("name_zh");
     row.note = cell("note");
     row.note_zh = cell("note_zh");
-    if (row.name_zh.empty() && is_chinese(row.name)) row.name_zh = row.name;
-    if (row.note_zh.empty() && is_chinese(row.note)) row.note_zh = row.note;
-    if (row.labels_zh.empty() && is_chinese(row.labels)) row.labels_zh = row.labels;
-    if (is_chinese(row.name) && row.entry != nullptr && !row.entry->name.empty()) {
+    if (row.name_zh.empty() && has_chinese(row.name)) row.name_zh = row.name;
+    if (row.note_zh.empty() && has_chinese(row.note)) row.note_zh = row.note;
+    if (row.labels_zh.empty() && has_chinese(row.labels)) row.labels_zh = row.labels;
+    if (has_chinese(row.name) && row.entry != nullptr && !row.entry->name.empty()) {
       const auto split = split_number(row.entry->name);
       row.name = split ? split->name : row.entry->name;
     }
@@ -220,25 +219,10 @@ class ParameterConversion {
     const auto parameters = od::read_parameters(text, file_, *errors_);
     refuse_same_ids(parameters, file_, *errors_);
     for (auto& error : shadowing_ids(parameters, *dictionary_, file_)) errors_->push_back(std::move(error));
-    for (const auto& one : parameters) check_default(one);
     for (const auto& row : rows_)
       if (!row.object.empty() && row.entry == nullptr && parse_object_address(row.object))
         wrong(row.line, formatted("{}: object {} is not in the data sheet", row.id, row.object),
               "correct the object, or leave it empty if the bus does not reach the parameter");
-  }
-
-  void check_default(const od::Parameter& one) {
-    if (!one.default_value) return;
-    const bool below = one.min && od::compare_numbers(*one.default_value, *one.min) < 0;
-    const bool above = one.max && od::compare_numbers(*one.default_value, *one.max) > 0;
-    if (below || above)
-      wrong(
-          one.file_line,
-          below ? formatted("{}: the default {} is below the minimum {} (raw numbers)", one.id,
-                            od::to_string(*one.default_value), od::to_string(*one.min))
-                : formatted("{}: the default {} is above the maximum {} (raw numbers)", one.id,
-                            od::to_string(*one.default_value), od::to_string(*one.max)),
-          "correct default, limits or scale in the table; what the table does not have comes from the data sheet");
   }
 
   const ForeignTable* table_;

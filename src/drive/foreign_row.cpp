@@ -41,44 +41,64 @@ std::optional<double> scale_of(const ForeignRow& row) {
   return scale && *scale != 1 && *scale > 0 ? scale : std::nullopt;
 }
 
+/// A number of the table and that of the data sheet.
+struct SheetNumber {
+  std::string_view field;
+  std::string* cell = nullptr;
+  std::optional<od::NodeValue> of_sheet;
+  int wider = 0;  ///< -1, 1: a lower, a higher limit is wider; 0: a default.
+};
+
+std::array<SheetNumber, 3> numbers_of(ForeignRow& row) {
+  const auto* entry = row.entry;
+  const auto none = std::optional<od::NodeValue>();
+  return {SheetNumber{"default", &row.standard, entry == nullptr ? none : entry->default_value, 0},
+          SheetNumber{"min", &row.low, entry == nullptr ? none : entry->low, -1},
+          SheetNumber{"max", &row.high, entry == nullptr ? none : entry->high, 1}};
+}
+
 /// What one number of a scaled row shows.
 enum class Shown : std::uint8_t { nothing, raw, in_unit };
 
-Shown shown_by(const std::string& cell, const std::optional<od::NodeValue>* of_sheet, double scale) {
-  if (cell.starts_with("0x") || cell.starts_with("0X")) return Shown::raw;
-  const auto number = parse_real(cell);
-  if (!number) return Shown::nothing;
-  if (cell.find('.') != std::string::npos) return Shown::in_unit;
-  const auto raw = of_sheet == nullptr ? std::optional<double>() : parse_real(text_of(*of_sheet));
+Shown shown_by(const SheetNumber& one, double scale) {
+  const auto number = parse_real(*one.cell);
+  // `0x190`, `190h`
+  if (!number) return parse_integer(*one.cell) ? Shown::raw : Shown::nothing;
+  if (one.cell->find('.') != std::string::npos) return Shown::in_unit;
+  const auto raw = parse_real(text_of(one.of_sheet));
   if (!raw || *number == 0) return Shown::nothing;
-  if (*number == *raw) return Shown::raw;
-  return std::abs(*number / scale - *raw) < 1e-6 ? Shown::in_unit : Shown::nothing;
+  const auto in_unit = *number / scale;
+  if (*number != *raw) return std::abs(in_unit - *raw) < 1e-6 ? Shown::in_unit : Shown::nothing;
+  // A limit may be equal by chance where it would be a narrower one in the unit.
+  const bool is_chance = (one.wider < 0 && in_unit > *raw) || (one.wider > 0 && in_unit < *raw);
+  return is_chance ? Shown::nothing : Shown::raw;
 }
 
 /// The lines that prove what the numbers are; 0: none does.
 struct Proofs {
   std::uint32_t raw = 0;
   std::uint32_t in_unit = 0;
-  std::uint32_t scaled = 0;  ///< The first with numbers and a scale.
+  std::uint32_t open = 0;  ///< The first with a scale and numbers that proves nothing by itself; 0 is both.
 };
 
-Proofs proofs_in(const std::vector<ForeignRow>& rows) {
+Proofs proofs_in(std::vector<ForeignRow>& rows) {
   Proofs out;
   const auto note = [](std::uint32_t& line, std::uint32_t at) {
     if (line == 0) line = at;
   };
-  for (const auto& row : rows) {
+  for (auto& row : rows) {
     const auto scale = scale_of(row);
     if (!scale) continue;
-    if (!(row.standard + row.low + row.high).empty()) note(out.scaled, row.line);
-    const auto* entry = row.entry;
-    for (const auto shown :
-         {shown_by(row.standard, entry == nullptr ? nullptr : &entry->default_value, *scale),
-          shown_by(row.low, entry == nullptr ? nullptr : &entry->low, *scale),
-          shown_by(row.high, entry == nullptr ? nullptr : &entry->high, *scale)}) {
+    bool is_open = false;
+    bool is_proven = false;
+    for (const auto& one : numbers_of(row)) {
+      const auto shown = shown_by(one, *scale);
       if (shown == Shown::raw) note(out.raw, row.line);
       if (shown == Shown::in_unit) note(out.in_unit, row.line);
+      is_proven = is_proven || shown != Shown::nothing;
+      is_open = is_open || parse_real(*one.cell).value_or(0) != 0;
     }
+    if (is_open && !is_proven) note(out.open, row.line);
   }
   return out;
 }
@@ -103,14 +123,43 @@ void make_raw(ForeignRow& row, std::string_view file, std::vector<Error>& errors
 /// Numbers that may be raw or in the unit; 0 is both.
 void mark_assumed(ForeignRow& row) {
   if (!scale_of(row)) return;
-  for (const auto& [field, cell] :
-       {std::pair{"default", &row.standard}, {"min", &row.low}, {"max", &row.high}})
-    if (const auto number = parse_real(*cell); number && *number != 0) append(row.assumed, field, ";");
+  for (const auto& one : numbers_of(row))
+    if (parse_real(*one.cell).value_or(0) != 0) append(row.assumed, one.field, ";");
+}
+
+/// A number that contradicts the data sheet: another default, or a wider limit.
+void compare_with_sheet(ForeignRow& row, std::string_view file, std::vector<Error>& errors,
+                        std::vector<std::string>& notices) {
+  const auto scale = scale_of(row);
+  for (const auto& one : numbers_of(row)) {
+    const auto own = od::parse_value(row.entry->type, *one.cell);
+    const auto sheet = text_of(one.of_sheet);
+    if (!own || sheet.empty()) continue;
+    const auto order = od::compare_numbers(*own, one.of_sheet->value);
+    if (order == 0 || (one.wider != 0 && order != one.wider)) continue;
+    if (scale) {
+      errors.push_back(file_error(
+          file, row.line,
+          formatted("{}: {} is {} here and {} in the data sheet (raw numbers, by the scale {})", row.id,
+                    one.field, *one.cell, sheet, row.scale),
+          formatted(
+              "correct the number or the scale, or leave the cell empty; the data sheet has {}, which is "
+              "{:.10g} {} by this scale",
+              sheet, od::to_double(one.of_sheet->value) * *scale, row.unit)));
+    } else if (one.wider == 0) {
+      notices.push_back(formatted("{}:{}: {}: default is {} here and {} in the data sheet: the table is used",
+                                  file, row.line, row.id, *one.cell, sheet));
+    } else {
+      notices.push_back(formatted("{}:{}: {}: {} is {} here and {} in the data sheet: the data sheet is used",
+                                  file, row.line, row.id, one.field, *one.cell, sheet));
+      *one.cell = sheet;
+    }
+  }
 }
 
 }  // namespace
 
-void settle_numbers(std::vector<ForeignRow>& rows, std::string_view file, std::vector<Error>& errors,
+bool settle_numbers(std::vector<ForeignRow>& rows, std::string_view file, std::vector<Error>& errors,
                     std::vector<std::string>& notices) {
   const auto proofs = proofs_in(rows);
   if (proofs.raw != 0 && proofs.in_unit != 0) {
@@ -118,22 +167,31 @@ void settle_numbers(std::vector<ForeignRow>& rows, std::string_view file, std::v
         file, proofs.in_unit,
         formatted("default or limits are numbers in the unit here, but raw numbers in line {}", proofs.raw),
         "write all numbers of the table in the unit, or all raw; correct the scale if it is wrong"));
-  } else if (proofs.in_unit != 0) {
+    return false;
+  }
+  if (proofs.in_unit != 0) {
     notices.push_back(
         formatted("{}:{}: default and limits are taken as numbers in the unit, as this line shows them; the "
                   "table of the family has raw ones",
                   file, proofs.in_unit));
     for (auto& row : rows) make_raw(row, file, errors);
-  } else if (proofs.scaled != 0 && proofs.raw == 0 && errors.empty()) {
+  } else if (proofs.open != 0 && proofs.raw != 0) {
+    notices.push_back(formatted(
+        "{}:{}: default and limits are taken as raw numbers (value = raw × scale), as line {} shows "
+        "them; compare them with the manual",
+        file, proofs.open, proofs.raw));
+  } else if (proofs.open != 0 && errors.empty()) {
     for (auto& row : rows) mark_assumed(row);
     notices.push_back(
         formatted("{}:{}: default and limits are taken as raw numbers (value = raw × scale): no line "
                   "of the table proves it; compare them with the manual",
-                  file, proofs.scaled));
+                  file, proofs.open));
   }
+  return true;
 }
 
-void add_from_sheet(ForeignRow& row, std::string_view file, std::vector<std::string>& notices) {
+void add_from_sheet(ForeignRow& row, std::string_view file, std::vector<Error>& errors,
+                    std::vector<std::string>& notices) {
   if (row.entry == nullptr) {
     if (row.access.empty()) row.access = "rw";
     if (!row.type.empty()) return;
@@ -150,9 +208,12 @@ void add_from_sheet(ForeignRow& row, std::string_view file, std::vector<std::str
   const auto own = od::parse_data_type(row.type);
   if (own && *own != entry.type) use_sheet(row.type, od::name(entry.type));
   if (row.type.empty()) row.type = od::name(entry.type);
-  if ((row.access == "rw" || row.access == "wo") && !od::writable(entry.access))
-    use_sheet(row.access, od::name(entry.access));
+  for (const auto access : {od::Access::ro, od::Access::rw, od::Access::wo, od::Access::constant})
+    if (row.access == od::name(access) && (od::writable(access) != od::writable(entry.access) ||
+                                           od::readable(access) != od::readable(entry.access)))
+      use_sheet(row.access, od::name(entry.access));
   if (row.access.empty()) row.access = od::name(entry.access);
+  compare_with_sheet(row, file, errors, notices);
   if (row.standard.empty()) row.standard = text_of(entry.default_value);
   if (row.low.empty()) row.low = text_of(entry.low);
   if (row.high.empty()) row.high = text_of(entry.high);

@@ -28,21 +28,26 @@ tl::unexpected<Error> cannot_make(const fs::path& folder, int reason) {
 class DraftFolder {
  public:
   explicit DraftFolder(const fs::path& beside, const std::string& name)
-      : path_((beside / ("." + name + ".XXXXXX")).string()) {
-    if (::mkdtemp(path_.data()) == nullptr) {
+      : outer_((beside / ("." + name + ".XXXXXX")).string()) {
+    if (::mkdtemp(outer_.data()) == nullptr) {
       reason_ = errno;
-      path_.clear();
+      outer_.clear();
+      return;
     }
+    // mkdtemp() makes it for the user alone; the one inside has the mode that new folders have.
+    std::error_code error;
+    path_ = fs::path(outer_) / name;
+    if (!fs::create_directory(path_, error)) reason_ = error.value();
   }
   ~DraftFolder() {
     std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
+    if (!outer_.empty()) fs::remove_all(outer_, ignored);
   }
   DraftFolder(const DraftFolder&) = delete;
   DraftFolder& operator=(const DraftFolder&) = delete;
 
   int reason() const { return reason_; }
-  fs::path path() const { return path_; }
+  const fs::path& path() const { return path_; }
 
   /// Never onto what is there. 0, or the reason.
   int move_to(const fs::path& place) {
@@ -51,12 +56,12 @@ class DraftFolder {
       // File systems that do not know the flag: rename() replaces an empty folder at most.
       if (errno != EINVAL || ::rename(path_.c_str(), place.c_str()) != 0) return errno;
     }
-    path_.clear();
     return 0;
   }
 
  private:
-  std::string path_;
+  std::string outer_;
+  fs::path path_;
   int reason_ = 0;
 };
 
@@ -70,6 +75,34 @@ Result<void> check_draft(const NewFamily& family, const fs::path& draft, std::sp
   }
   if (count == 0) return {};
   return fail(Errc::file, formatted("nothing was written: {}", all), "correct the data sheet or the tables");
+}
+
+/// Writes the files into a draft beside others, and checks them.
+Result<void> write_draft(const DraftFolder& draft, const fs::path& beside, const NewFamily& family,
+                         std::span<const fs::path> folders) {
+  if (draft.reason() != 0) return cannot_make(beside, draft.reason());
+  for (const auto& [name, content] : family.files)
+    if (const auto written = write_file_atomically(draft.path() / name, content); !written)
+      return fail(written.error());
+  return check_draft(family, draft.path(), folders);
+}
+
+Result<fs::path> free_place(const NewFamily& family, const fs::path& folder) {
+  auto place = folder / family.name;
+  std::error_code ignored;
+  if (fs::exists(place, ignored))
+    return fail(Errc::usage, formatted("{} exists", place.string()), "choose another name");
+  return place;
+}
+
+/// Whether the folder is there, or could be made, and takes new folders.
+Result<void> check_writable(const fs::path& folder) {
+  std::error_code ignored;
+  auto there = fs::absolute(folder, ignored);
+  while (!fs::exists(there, ignored) && there.has_relative_path()) there = there.parent_path();
+  if (!fs::is_directory(there, ignored)) return cannot_make(folder, ENOTDIR);
+  if (::access(there.c_str(), W_OK | X_OK) != 0) return cannot_make(folder, errno);
+  return {};
 }
 
 }  // namespace
@@ -90,30 +123,30 @@ Result<void> check_family_name(std::string_view name) {
               "lower case letters, digits, _ and -, beginning with a letter: p10, lxd7-can");
 }
 
-Result<fs::path> own_families_folder() {
-  if (const char* config = std::getenv("XDG_CONFIG_HOME"); config != nullptr && *config != '\0')
-    return fs::path(config) / "servoctl/drives";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
-    return fs::path(home) / ".config/servoctl/drives";
-  return fail(Errc::usage, "there is no folder for your own families", "set HOME or XDG_CONFIG_HOME");
-}
-
 Result<fs::path> write_family(const NewFamily& family, const fs::path& folder,
                               std::span<const fs::path> folders) {
-  const auto place = folder / family.name;
+  auto place = free_place(family, folder);
+  if (!place) return place;
   std::error_code error;
-  if (fs::exists(place, error))
-    return fail(Errc::usage, formatted("{} exists", place.string()), "choose another name");
   fs::create_directories(folder, error);
   if (error) return cannot_make(folder, error.value());
   // Not in the folder of the families: no other command finds half a family there.
   DraftFolder draft(folder.parent_path(), family.name);
-  if (draft.path().empty()) return cannot_make(folder.parent_path(), draft.reason());
-  for (const auto& [name, content] : family.files)
-    if (const auto written = write_file_atomically(draft.path() / name, content); !written)
-      return fail(written.error());
-  if (const auto sound = check_draft(family, draft.path(), folders); !sound) return fail(sound.error());
-  if (const int reason = draft.move_to(place); reason != 0) return cannot_make(place, reason);
+  if (const auto sound = write_draft(draft, folder.parent_path(), family, folders); !sound)
+    return fail(sound.error());
+  if (const int reason = draft.move_to(*place); reason != 0) return cannot_make(*place, reason);
+  return place;
+}
+
+Result<fs::path> try_family(const NewFamily& family, const fs::path& folder,
+                            std::span<const fs::path> folders) {
+  auto place = free_place(family, folder);
+  if (!place) return place;
+  for (const auto& one : {folder, folder.parent_path()})
+    if (const auto writable = check_writable(one); !writable) return fail(writable.error());
+  const auto beside = fs::temp_directory_path();
+  const DraftFolder draft(beside, family.name);
+  if (const auto sound = write_draft(draft, beside, family, folders); !sound) return fail(sound.error());
   return place;
 }
 

@@ -27,14 +27,14 @@ Result<void> check_family_name(std::string_view name);
 /// `source` is the name of the data sheet, for the comments.
 std::string rules_of_sheet(const od::EdsFile& sheet, std::string_view source, NewFamily& family);
 
-/// Where families of the user's own stand: `$XDG_CONFIG_HOME/servoctl/drives`, `~/.config/servoctl/drives`.
-/// Errc::usage where neither variable is set.
-Result<std::filesystem::path> own_families_folder();
-
 /// Writes all files into a folder of the family's name in `folder`, in one step: it is there whole or not at
 /// all. What is written is checked first (mistakes_of()). Errc::usage where the folder exists, Errc::file
 /// where it cannot be written or the check finds errors. Returns the new folder.
 Result<std::filesystem::path> write_family(const NewFamily& family, const std::filesystem::path& folder,
                                            std::span<const std::filesystem::path> folders);
+
+/// The same checks, with nothing written but a temporary folder, which is removed.
+Result<std::filesystem::path> try_family(const NewFamily& family, const std::filesystem::path& folder,
+                                         std::span<const std::filesystem::path> folders);
 
 }  // namespace servoctl::drive

@@ -151,7 +151,7 @@ Profile generic_profile(std::string family, std::span<const fs::path> folders) {
   return profile;
 }
 
-/// A file of the user's own stands on what CiA 402 says of the objects it shares with it.
+/// A file of the user's own builds on what CiA 402 says of the objects it shares with it.
 Result<Profile> load_single_file(const fs::path& path, std::span<const fs::path> folders) {
   if (lower(path.extension().string()) == ".toml") {
     const auto stem = fs::path(path).replace_extension();
@@ -179,7 +179,7 @@ bool names_a_file(std::string_view family) {
 
 bool Profile::is_generic() const { return rules.family.empty() || rules.family == kGenericFamily; }
 
-bool Profile::stands_on(std::string_view other) const {
+bool Profile::descends_from(std::string_view other) const {
   return equals_nocase(family, other) ||
          std::any_of(ancestors.begin(), ancestors.end(),
                      [&](const auto& ancestor) { return equals_nocase(ancestor, other); });

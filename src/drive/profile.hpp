@@ -46,7 +46,7 @@ struct Profile {
 
   /// The parameter with this id, in any of the ways people write it (`Pn0202`, `pn202`).
   const od::Parameter* parameter(std::string_view id) const;
-  /// The parameter that stands at this object.
+  /// The parameter of this object.
   const od::Parameter* parameter(ObjectAddress object) const;
 
   /// What its parents, or CiA 402, say of a code that it does not list itself; null for nothing.
@@ -56,7 +56,7 @@ struct Profile {
   bool is_generic() const;
 
   /// Whether it is this family or descends from it.
-  bool stands_on(std::string_view other) const;
+  bool descends_from(std::string_view other) const;
 
   /// Builds the tables behind parameter(), and the parameters of a dictionary that comes without a table of
   /// them; called by load_profile().
@@ -70,7 +70,7 @@ struct Profile {
 /// Where families are looked for, in this order: the folders of $SERVOCTL_DRIVES (separated by `:`), the
 /// user's own
 /// (`$XDG_CONFIG_HOME/servoctl/drives`, `~/.config/servoctl/drives`), the data installed with the program or
-/// standing in its source tree.
+/// in its source tree.
 std::vector<std::filesystem::path> drive_folders();
 
 /// The folders of a program: drive_folders(), looked for when they are first asked for (most lines never do),
@@ -78,7 +78,7 @@ std::vector<std::filesystem::path> drive_folders();
 class Folders {
  public:
   Folders() = default;
-  // NOLINTBEGIN(google-explicit-constructor): stands wherever folders do.
+  // NOLINTBEGIN(google-explicit-constructor): used wherever folders are.
   Folders(std::vector<std::filesystem::path> given) : given_(std::move(given)) {}
   Folders(std::initializer_list<std::filesystem::path> given) : given_(given) {}
   operator std::span<const std::filesystem::path>() const;
@@ -110,7 +110,7 @@ Result<Profile> load_profile(std::string_view family, std::span<const std::files
 /// The same of a family that was found.
 Result<Profile> load_profile(const Family& family, std::span<const std::filesystem::path> folders);
 
-/// What a data sheet that stands in no file says (a drive's own dictionary), on what CiA 402 says of all
+/// What a data sheet that is in no file says (a drive's own dictionary), on what CiA 402 says of all
 /// drives.
 Profile profile_of_sheet(od::EdsFile sheet, std::string name, std::span<const std::filesystem::path> folders);
 

@@ -29,7 +29,7 @@ struct TopicRow {
 /// What a manual says of one thing that is neither object, parameter nor fault: a connector, a display, a
 /// mode, a homing method (docs/drive-data.md).
 struct Topic {
-  std::string family;  ///< In whose file it stands.
+  std::string family;  ///< In whose file it is.
   std::string kind;    ///< One of topic_kinds().
   std::string name;    ///< As the manual calls it; once in a file, whatever its case.
   std::vector<std::string> also;
@@ -57,13 +57,13 @@ struct Topic {
 /// What a topic may be about: `wiring connector cable panel led …`.
 std::span<const std::string_view> topic_kinds();
 
-/// Whether the text says where something stands: numbers or ranges of lines with blanks between them, or a
+/// Whether the text says where something is: numbers or ranges of lines with blanks between them, or a
 /// clause, which begins with a letter.
 bool is_source_line(std::string_view text);
 
 /// Reads `<family>.topics.toml`. Errc::file with file and line for an unknown key, a value of the wrong kind,
-/// a row with another number of cells than there are columns, a text in one language only, a name that stands
-/// twice, something that is missing.
+/// a row with another number of cells than there are columns, a text in one language only, a name that
+/// appears twice, something that is missing.
 Result<std::vector<Topic>> parse_topics(std::string_view toml, std::string_view file,
                                         std::string_view family);
 

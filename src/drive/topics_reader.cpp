@@ -167,7 +167,7 @@ class TopicsReader {
     if (topic.text.empty() && topic.rows.empty() && topic.picture.empty())
       return wrong("it says nothing: 'text', 'rows' or 'picture' is missing");
     if (topic.value && !topic.object) return wrong("'value' needs 'object'");
-    if (!names_.insert(folded(topic.name)).second) return wrong("its name stands twice in the file");
+    if (!names_.insert(folded(topic.name)).second) return wrong("its name appears twice in the file");
     if (topic.columns.empty() != topic.rows.empty()) return wrong("'columns' and 'rows' go together");
     if (topic.columns_zh.size() != topic.columns.size())
       return wrong(

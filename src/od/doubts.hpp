@@ -18,7 +18,7 @@ struct Mark {
 };
 
 /// Reads `default 938 3288;min`: fields separated by `;`, each with the lines of the manual behind it. Empty
-/// for a field without a name, a line that is no number, a field that stands twice.
+/// for a field without a name, a line that is no number, a field that appears twice.
 std::optional<std::vector<Mark>> parse_marks(std::string_view text);
 
 /// `default (lines 938, 3288), min`: for people.

@@ -57,7 +57,7 @@ void read_flags(TableRow& row, Parameter& out) {
       out.is_volatile = true;
     } else if (flag.starts_with("mirror=")) {
       out.mirror = parse_object_address(flag.substr(7));
-      if (!out.mirror) row.refuse(kFlags, "flags with an object behind mirror=");
+      if (!out.mirror) row.refuse(kFlags, "flags with an object after mirror=");
     } else if (!flag.empty()) {
       row.refuse(kFlags, "made of command, volatile and mirror=OBJECT");
     }
@@ -70,6 +70,17 @@ void read_limits(TableRow& row, Parameter& out) {
   out.max = row.value(kMax, out.type);
   if (out.min && out.max && compare_numbers(*out.min, *out.max) > 0)
     row.refuse(formatted("{}: min is above max", out.id));
+  if (!out.default_value) return;
+  const auto standard = to_string(*out.default_value);
+  const std::string hint = "correct the default, the limit or the scale";
+  if (out.min && compare_numbers(*out.default_value, *out.min) < 0)
+    row.refuse(formatted("{}: the default {} is below the minimum {} (raw numbers)", out.id, standard,
+                         to_string(*out.min)),
+               hint);
+  if (out.max && compare_numbers(*out.default_value, *out.max) > 0)
+    row.refuse(formatted("{}: the default {} is above the maximum {} (raw numbers)", out.id, standard,
+                         to_string(*out.max)),
+               hint);
 }
 
 Parameter read_row(TableRow& row) {

@@ -41,8 +41,8 @@ struct Parameter {
 };
 
 /// Reads a table of panel parameters. Errc::file with file and line for an unknown column, a bad cell, a
-/// value that does not fit its type, min above max, an id or object that stands twice, an unknown flag: the
-/// first of them.
+/// value that does not fit its type, min above max, a default outside its limits, an id or object that
+/// appears twice, an unknown flag: the first of them.
 Result<std::vector<Parameter>> parse_parameters(std::string_view csv, std::string_view file);
 
 /// The same of all rows that are right; adds everything that is wrong to `errors`.

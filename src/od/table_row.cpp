@@ -50,7 +50,9 @@ void TableRow::refuse(std::size_t column, std::string_view expected) {
   refuse(formatted("column {}: '{}' is not {}", names_[column], cell(column), expected));
 }
 
-void TableRow::refuse(std::string what) { errors_.push_back(file_error(file_, row_->line, what)); }
+void TableRow::refuse(std::string what, std::string hint) {
+  errors_.push_back(file_error(file_, row_->line, what, std::move(hint)));
+}
 
 std::optional<ObjectAddress> TableRow::object(std::size_t column) {
   const auto text = cell(column);
@@ -98,7 +100,7 @@ std::vector<EnumLabel> TableRow::labels(std::size_t column, std::size_t column_z
   if (!english || !chinese) return out;
   for (const auto& label : *english) {
     if (std::any_of(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; }))
-      refuse(column, formatted("a list without doubles ({} stands twice)", label.first));
+      refuse(column, formatted("a list without doubles ({} appears twice)", label.first));
     out.push_back({label.first, label.second, {}});
   }
   for (const auto& label : *chinese) {

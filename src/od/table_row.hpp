@@ -49,7 +49,7 @@ class TableRow {
   /// Notes that the cell is not what it should be.
   void refuse(std::size_t column, std::string_view expected);
   /// Notes anything else that is wrong in the row.
-  void refuse(std::string what);
+  void refuse(std::string what, std::string hint = {});
   const std::vector<Error>& errors() const { return errors_; }
 
  private:

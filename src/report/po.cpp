@@ -96,7 +96,7 @@ class PoReader {
     part_ = Part::none;
     if (!entry_.id.empty()) {
       if (!known_.insert(entry_.id).second)
-        return wrong(formatted("the msgid of line {} stands twice", entry_.line));
+        return wrong(formatted("the msgid of line {} appears twice", entry_.line));
       out_.push_back(std::move(entry_));
     }
     entry_ = {};

@@ -18,7 +18,7 @@ struct PoEntry {
 };
 
 /// Reads `msgid` and `msgstr` with their continuation lines. The escapes are those of C: `\n \t \r \" \\`.
-/// Errc::file with the line for anything else, for a msgid that stands twice and one without msgstr; `file`
+/// Errc::file with the line for anything else, for a msgid that appears twice and one without msgstr; `file`
 /// is used in messages. The header, whose msgid is empty, is left out.
 Result<std::vector<PoEntry>> parse_po(std::string_view text, std::string_view file);
 

@@ -95,7 +95,7 @@ void judge_by_others(const Identity& identity, const drive::Profile& profile,
                      std::span<const drive::Family> families, FamilyVerdict& verdict) {
   if (profile.of_file) return;
   for (const auto& family : families) {
-    if (profile.stands_on(family.name)) continue;
+    if (profile.descends_from(family.name)) continue;
     const auto shared = drive::shared_rules(family);
     if (!shared) continue;
     const auto& rules = **shared;

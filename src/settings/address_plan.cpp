@@ -81,7 +81,7 @@ class PlanReader {
     std::optional<std::uint32_t> bitrate;
     for (const auto& row : rows) {
       if (!from.insert(row.node).second)
-        return fail(file_error(file_, row.line, formatted("node {} stands twice", row.node)));
+        return fail(file_error(file_, row.line, formatted("node {} appears twice", row.node)));
       if (!to.insert(row.to).second)
         return fail(file_error(file_, row.line, formatted("two drives are to be node {}", row.to)));
       if (!bitrate) bitrate = row.bitrate;

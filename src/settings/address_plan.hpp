@@ -24,7 +24,7 @@ struct AddressRow {
 
 /// Reads a plan: CSV with the columns `node` and `new`, and `family`, `serial` and `bitrate` where they are
 /// wanted.
-/// Errc::file with its line for another column, a number that is no node-ID, and a node that stands twice in
+/// Errc::file with its line for another column, a number that is no node-ID, and a node that appears twice in
 /// one of the two columns, and for two bitrates.
 Result<std::vector<AddressRow>> parse_address_plan(std::string_view csv, std::string_view file);
 

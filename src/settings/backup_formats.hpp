@@ -75,7 +75,7 @@ Result<Backup> read_concise_dcf(std::string_view bytes, const std::string& file)
 
 /// Adds what the family knows to what a file of another format than JSON says: id, name, type. Leaves out,
 /// with the reason, what is no setting. Takes out as unusable an object the family does not know, one that
-/// stands twice (unless `procedure`, and of a PDO: then the last counts), and bytes of another length.
+/// appears twice (unless `procedure`, and of a PDO: then the last counts), and bytes of another length.
 void settle(Backup& backup, const std::string& file, const drive::Profile& profile, bool procedure);
 
 }  // namespace servoctl::settings

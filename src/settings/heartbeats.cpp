@@ -68,7 +68,7 @@ Result<void> check_watches(std::uint8_t node, std::span<const HeartbeatWatch> wa
       return fail(Errc::usage, formatted("node {} cannot watch its own heartbeat", node),
                   "name another node");
     if (!seen.insert(watch.node).second)
-      return fail(Errc::usage, formatted("node {} stands twice", watch.node), "one time a node");
+      return fail(Errc::usage, formatted("node {} appears twice", watch.node), "one time a node");
   }
   return {};
 }

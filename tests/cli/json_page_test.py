@@ -30,7 +30,7 @@ if not begin or not end:
 fresh = f"{head}{BEGIN}\n{Page(os.path.join(source, 'docs/schema')).text(commands())}\n{END}{tail}"
 anchors = re.findall(r'<a id="([^"]+)">', fresh)
 if len(anchors) != len(set(anchors)):
-    sys.exit("docs/json.md: a name stands twice: " + ", ".join(sorted({each for each in anchors if anchors.count(each) > 1})))
+    sys.exit("docs/json.md: a name appears twice: " + ", ".join(sorted({each for each in anchors if anchors.count(each) > 1})))
 for link in sorted(set(re.findall(r"\]\(#([^)]+)\)", fresh)) - set(anchors)):
     sys.exit(f"docs/json.md: nothing is called #{link}")
 if os.environ.get("SERVOCTL_REWRITE_JSON_PAGE") == "1":

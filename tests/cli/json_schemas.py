@@ -32,11 +32,11 @@ OPTIONAL = {
 
 
 def no_twins(pairs):
-    """A record in which no key stands twice: readers would take the one or the other."""
+    """A record in which no key appears twice: readers would take the one or the other."""
     out = dict(pairs)
     if len(out) != len(pairs):
         keys = [key for key, _ in pairs]
-        raise ValueError("a key stands twice: " + ", ".join(sorted({k for k in keys if keys.count(k) > 1})))
+        raise ValueError("a key appears twice: " + ", ".join(sorted({k for k in keys if keys.count(k) > 1})))
     return out
 
 

@@ -247,7 +247,7 @@ def check_of_itself():
         read('{"a":1,"a":2}')
     except ValueError:
         return
-    sys.exit("a key that stands twice is taken")
+    sys.exit("a key that appears twice is taken")
 
 
 problems += schemas.check()

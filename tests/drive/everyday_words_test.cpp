@@ -30,7 +30,7 @@ TEST(EverydayWords, ReadsThingsAndWhatTheyAreCalled) {
 TEST(EverydayWords, TellsTheLineOfAMistake) {
   EXPECT_EQ(refused_words("thing,words\n"), "f.words.csv:1: the columns are not thing,words,manual");
   EXPECT_EQ(refused_words("thing,words,manual\n,jog,\n"), "f.words.csv:2: 'thing' is missing");
-  EXPECT_EQ(refused_words("thing,words,manual\njog,a,\njog,b,\n"), "f.words.csv:3: 'jog' stands twice");
+  EXPECT_EQ(refused_words("thing,words,manual\njog,a,\njog,b,\n"), "f.words.csv:3: 'jog' appears twice");
   EXPECT_EQ(refused_words("thing,words,manual\njog,a,no\n"), "f.words.csv:2: 'manual' is none, or empty");
 }
 

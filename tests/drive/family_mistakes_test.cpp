@@ -78,6 +78,19 @@ TEST_F(FamilyMistakes, OfTheTablesAllAreNamedWithTheirLine) {
       "p10.words.csv:1: the columns are not thing,words,manual\n");
 }
 
+TEST_F(FamilyMistakes, WhatNewFamiliesAreRefusedForIsFoundInOnesThatAreThere) {
+  write("p10.toml", kSoundRules);
+  write("p10.params.csv", "id,type,access,default,max,name\nA1,u8,rw,9,5,N\n");
+  write("p10.faults.csv", "code,name\n2310,A\n0x3210,B\n0x3210,C\n");
+  EXPECT_EQ(messages(),
+            "p10.params.csv:2: A1: the default 9 is above the maximum 5 (raw numbers)\n"
+            "p10.faults.csv:2: column code: '2310' is not a hexadecimal code of 16 bits, such as 0x8130\n"
+            "p10.faults.csv:4: 0x3210 is in line 3 as well\n");
+  EXPECT_EQ(count_errors(found()), 3U);
+  write("p10.fault.csv", "");
+  EXPECT_EQ(count_errors(found()), 3U) << "a warning breaks nothing";
+}
+
 TEST_F(FamilyMistakes, NamesInTheRulesAreLookedUp) {
   write("p10.toml",
         std::string(kSoundRules) +

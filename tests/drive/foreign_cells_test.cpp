@@ -25,17 +25,22 @@ TEST(ForeignCells, RangesUnitsObjectsAndLists) {
   EXPECT_EQ(family_labels("0：关 1：开"), "0=关;1=开");
   EXPECT_EQ(family_labels("0: off,\n1: on"), family_labels("0=off;1=on"));
   EXPECT_EQ(family_labels("0=Out 1 off;1=Out 1 on"), "0=Out 1 off;1=Out 1 on");
-  for (const auto* text : {"see page 3", "0-1,3-5", "0:100", "0:off1:on", "0: off / 1: on", "1: ratio 1:2"})
+  for (const auto* text :
+       {"see page 3", "0-1,3-5", "0:100", "0:off1:on", "0: off / 1: on", "1: ratio 1:2", "0:off 1:on A:x"})
     EXPECT_EQ(family_labels(text), std::nullopt) << text;
+  EXPECT_EQ(family_labels("0=acc: fast;1=dec: slow"), "0=acc: fast;1=dec: slow");
+  EXPECT_EQ(family_object("2003h", "sub2").text, "2003h:sub2") << "no object, and not 2003h";
   EXPECT_EQ(family_range("±100"), (Range{"-100", "100"}));
   EXPECT_EQ(family_range("±-1"), std::nullopt);
   for (const auto* text : {"1/min", "min-1", "r/min"})
     EXPECT_EQ(family_unit(text), (Range{"", "rpm"})) << text;
   EXPECT_EQ(family_unit("0.1 ms/1000rpm"), (Range{"0.1", "ms/1000rpm"}));
   EXPECT_EQ(family_unit("Hz/1000"), std::nullopt);
-  EXPECT_TRUE(is_spreadsheet_date("2-Jan") && is_spreadsheet_date("Jan-02") && is_spreadsheet_date("1月2日"));
-  EXPECT_FALSE(is_spreadsheet_date("P1-02") || is_spreadsheet_date("1-02") ||
-               is_spreadsheet_date("Marker-2"));
+  for (const auto* text :
+       {"2-Jan", "Jan-02", "1月2日", "2026-01-02", "02. Jan", "1/2/2026", "2.00E+05", "2E+05"})
+    EXPECT_TRUE(is_changed_by_spreadsheet(text)) << text;
+  for (const auto* text : {"P1-02", "1-02", "Marker-2", "2E05", "1.02", "A-1-2000", ""})
+    EXPECT_FALSE(is_changed_by_spreadsheet(text)) << text;
   EXPECT_EQ(family_code("2310", true), "0x2310");
   EXPECT_EQ(family_code("2310", false), std::nullopt);
   EXPECT_EQ(family_code("2310h", false), "0x2310");

@@ -41,13 +41,16 @@ TEST(ForeignFaults, BareDigitsAreACodeOnlyUnderSuchAHeading) {
       "are written 0x8611\n");
   for (const auto* heading : {"Error code (603Fh)", "EMCY code", "CANopen code"}) {
     const auto code = convert_fault_table(formatted("{},Name\n2310,A\n", heading));
-    EXPECT_NE(code.table.csv.find("\n0x2310,,,,,A"), std::string::npos) << heading << code.wrong();
-    EXPECT_EQ(code.notices(),
-              formatted("f.csv:2: codes in column '{}' without 0x or h are taken as hexadecimal\n", heading));
+    EXPECT_EQ(
+        code.wrong(),
+        "f.csv:2: column code: '2310' is not a hexadecimal code of 16 bits, such as 0x8130; write 0x2310 if these "
+        "digits are hexadecimal, 0x0906 if they are decimal\n")
+        << heading;
   }
-  EXPECT_NE(
-      convert_fault_table("EMCY code,Name\nEr01,A\n").wrong().find("f.csv:2: 'Er01' is no code of 603Fh"),
-      std::string::npos);
+  EXPECT_NE(convert_fault_table("EMCY code,Name\nEr01,A\n")
+                .wrong()
+                .find("f.csv:2: column code: 'Er01' is not a hex"),
+            std::string::npos);
   EXPECT_NE(convert_fault_table("Error code (dec),Name\n8976,A\n").wrong().find("the base of numbers"),
             std::string::npos);
   EXPECT_NE(
@@ -66,7 +69,7 @@ TEST(ForeignFaults, WhatMayBeACodeOrAPanelTextIsNamed) {
   refused("Error code,Name\n0x2310,A\n23A0,B\n", "f.csv:3: '23A0' may be a code of 603Fh or what the panel");
   refused("No,Code,Name\n1,0x2310,A\n2,0x3220,B\n",
           "f.csv:1: the column 'No' counts the rows: 1, 2, 3; remove it; name it 'panel'");
-  refused("Panel,Name\nEr01,A\nEr02,B\nEr01,C\n", "f.csv:4: Er01 stands in line 2 as well; write all causes");
+  refused("Panel,Name\nEr01,A\nEr02,B\nEr01,C\n", "f.csv:4: Er01 is in line 2 as well; write all causes");
   EXPECT_NE(faults_of("Panel,Code,Name\n1,0x2310,A\n2,0x3220,B\n").find("0x2310,,1,"), std::string::npos);
   (void)faults_of("Panel,Name\n,A\n,B\n");
 }

@@ -96,6 +96,8 @@ TEST(ForeignTables, ASubIndexOfTwoDigitsIsNoGuess) {
   refuses("No.,Index\nP2,2004:10\n", "t.csv:2: sub-index '10' may be decimal or hexadecimal");
   refuses("No.,Index\nP2,2004h-10\n", "t.csv:2: sub-index '10' may be decimal or hexadecimal");
   refuses("No.,Index,Sub\nP2,,1\n", "t.csv:2: sub-index 1 without an index");
+  refuses("No.,Index,Sub\nP1-01,2001h,sub2\n",
+          "t.csv:2: column object: '2001h:sub2' is not an object such as");
   for (const auto* sub : {"0Ah", "0x0A", "0A"}) {
     const auto out = convert(formatted("No.,Index,Sub\nP2,2004h,{}\n", sub));
     EXPECT_EQ(out.wrong(), "") << sub;
@@ -109,7 +111,12 @@ TEST(ForeignTables, AHeadingThatNamesABaseOrAUnitIsNotDropped) {
             formatted("t.csv:1: '{}': the base of numbers is not read from a heading; write hexadecimal",
                       heading));
   refuses("No.,Default (rpm)\nP1-01,1\n",
-          "t.csv:1: 'Default (rpm)': what stands in brackets over numbers is not read");
+          "t.csv:1: 'Default (rpm)': text in brackets over numbers is not read");
+  refuses(
+      "No.,Default %\nP1-01,1\n",
+      "t.csv:1: 'Default %': the mark % over numbers is not read; take it out of the heading; write units into "
+      "a column 'unit'");
+  refuses("No.,Max *\nP1-01,1\n", "t.csv:1: 'Max *': the mark * over numbers is not read");
   EXPECT_EQ(convert("No.,Name (short),Index (CANopen)\nP1-01,a,2001h\n").wrong(), "");
 }
 
@@ -154,6 +161,42 @@ TEST(ForeignTables, RawAndDisplayedNumbersDoNotMix) {
           "t.csv:2: P1-02: 1e30 ms is no whole number of steps of 0.1; ");
 }
 
+TEST(ForeignTables, AScaleThatTheDataSheetContradictsIsRefused) {
+  refuses(
+      "No.,Unit,Default\nP1-01,0.5 Hz,40.0\n",
+      "t.csv:2: P1-01: default is 80 here and 400 in the data sheet (raw numbers, by the scale 0.5); correct the "
+      "number or the scale, or leave the cell empty; the data sheet has 400, which is 200 Hz by this scale\n");
+  refuses("No.,Unit,Max\nP1-01,0.01 Hz,200.0\n",
+          "t.csv:2: P1-01: max is 20000 here and 2000 in the data sheet (raw numbers, by the scale 0.01); ");
+  refuses("No.,Unit,Max\nP1-01,0.1 Hz,30.0\n",
+          "t.csv:2: P1-01: the default 400 is above the maximum 300 (raw");
+  refuses("No.,Unit,Default\nP1-01,0.1 Hz,50\n",
+          "t.csv:2: P1-01: default is 50 here and 400 in the data sheet");
+  EXPECT_EQ(convert("No.,Unit,Default,Range\nP1-01,0.1 Hz,40.0,0.5~150.0\n").wrong(), "")
+      << "narrower limits";
+}
+
+TEST(ForeignTables, ALimitThatIsEqualByChanceProvesNothing) {
+  const auto chance = convert("No.,Unit,Min\nP1-01,0.1 Hz,1\n");
+  EXPECT_EQ(chance.wrong(), "");
+  EXPECT_NE(chance.notices().find("no line of the table proves it"), std::string::npos) << chance.notices();
+  const auto of_others = convert("No.,Index,Unit,Default\nP1-02,2002h,0.1 ms,20\nP1-01,2001h,0.1 Hz,400\n");
+  EXPECT_EQ(of_others.wrong(), "");
+  EXPECT_EQ(
+      of_others.notices(),
+      "t.csv:2: default and limits are taken as raw numbers (value = raw × scale), as line 3 shows them; compare "
+      "them with the manual\n");
+}
+
+TEST(ForeignTables, HexadecimalNumbersAreRaw) {
+  for (const auto* number : {"190h", "0x190"}) {
+    const auto out = convert(formatted("No.,Unit,Default\nP1-01,0.1 Hz,{}\n", number));
+    EXPECT_EQ(out.wrong() + out.notices(), "") << number;
+    refuses(formatted("No.,Unit,Default,Range\nP1-01,0.1 Hz,{},1.0~200.0\n", number),
+            "t.csv:2: default or limits are numbers in the unit here, but raw numbers in line 2; ");
+  }
+}
+
 TEST(ForeignTables, ScaledRowsTakeRawNumbersOfTheDataSheet) {
   const auto out = convert("No.,Unit,Max\nP1-01,0.1 Hz,150.0\n");
   EXPECT_EQ(out.wrong(), "");
@@ -185,6 +228,16 @@ TEST(ForeignTables, TheDataSheetDecidesTypeAndAccess) {
   const auto access = convert("No.,Access\nP1-03,R/W\n");
   EXPECT_EQ(access.notices(), "t.csv:2: P1-03 is rw here and ro in the data sheet: the data sheet is used\n");
   EXPECT_NE(access.table.csv.find("P1-03,0x2003:00,i16,ro,"), std::string::npos);
+  for (const auto* word : {"ro", "wo"})
+    EXPECT_EQ(
+        convert(formatted("No.,Access\nP1-01,{}\n", word)).notices(),
+        formatted("t.csv:2: P1-01 is {} here and rw in the data sheet: the data sheet is used\n", word));
+  const auto wide = convert("No.,Default,Range\nP1-01,500,0~20000\n");
+  EXPECT_EQ(wide.notices(),
+            "t.csv:2: P1-01: default is 500 here and 400 in the data sheet: the table is used\n"
+            "t.csv:2: P1-01: min is 0 here and 1 in the data sheet: the data sheet is used\n"
+            "t.csv:2: P1-01: max is 20000 here and 2000 in the data sheet: the data sheet is used\n");
+  EXPECT_NE(wide.table.csv.find(",500,1,2000,"), std::string::npos) << wide.table.csv;
 }
 
 TEST(ForeignTables, AnIndexAloneDoesNotNameAnEntry) {
@@ -218,7 +271,9 @@ TEST(ForeignTables, AListThatMayBeAnotherOneIsNamed) {
 }
 
 TEST(ForeignTables, WhatSpreadsheetsMakeOfATableIsNamed) {
-  refuses("No.,Index\n2-Jan,2001h\n", "t.csv:2: '2-Jan' is a date, perhaps made of a parameter number");
+  refuses("No.,Index\n2-Jan,2001h\n",
+          "t.csv:2: '2-Jan' is a date or a rounded number, perhaps made of a parameter number");
+  refuses("No.,Index\n2.00E+05,2001h\n", "t.csv:2: '2.00E+05' is a date or a rounded number");
   refuses(std::string_view("PK\x03\x04 No.,Index\n", 17),
           "t.csv is a spreadsheet, and no text; save the sheet");
   EXPECT_EQ(convert("No.,Index\nP1-01,2001h\nNo.,Index\nP1-02,2002h\n").table.rows, 2U)

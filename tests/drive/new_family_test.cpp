@@ -1,6 +1,7 @@
 // Families made from a data sheet and from tables as people have them.
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -80,7 +81,8 @@ TEST_F(NewFamilies, UnitsOfCia402StayOpen) {
     const auto child = load_profile(name, folders);
     ASSERT_TRUE(child) << child.error().message;
     EXPECT_TRUE(leaves_units_open(*child)) << name;
-    EXPECT_TRUE(child->stands_on("p10") && child->stands_on("cia402") && !child->stands_on("gsd600")) << name;
+    EXPECT_TRUE(child->descends_from("p10") && child->descends_from("cia402")) << name;
+    EXPECT_FALSE(child->descends_from("gsd600")) << name;
   }
   const auto known = load_profile("gsd600", folders);
   ASSERT_TRUE(known);
@@ -105,6 +107,35 @@ TEST_F(NewFamilies, AnErrorLeavesNothingBehind) {
   EXPECT_NE(written.error().message.find("column 'name' is missing"), std::string::npos)
       << written.error().message;
   EXPECT_EQ(things(), 1U) << "the folder for families alone";
+}
+
+TEST_F(NewFamilies, ItsFolderHasTheModeOfNewFolders) {
+  const auto before = ::umask(S_IWGRP | S_IRWXO);
+  const auto place = write_family(family, root / "drives", folders);
+  ::umask(before);
+  ASSERT_TRUE(place) << place.error().message;
+  EXPECT_EQ(fs::status(*place).permissions(), fs::perms(0750));
+  EXPECT_EQ(std::distance(fs::directory_iterator(root), {}), 1) << "no draft is left";
+}
+
+TEST_F(NewFamilies, ATrialFailsAsTheWritingWould) {
+  const auto refused = [&](const fs::path& folder) {
+    const auto tried = try_family(family, folder, folders);
+    const auto written = write_family(family, folder, folders);
+    EXPECT_FALSE(written);
+    EXPECT_EQ(tried ? std::string() : tried.error().message,
+              written ? std::string() : written.error().message);
+  };
+  const auto tried = try_family(family, root / "drives", folders);
+  ASSERT_TRUE(tried) << tried.error().message;
+  EXPECT_EQ(things(), 0U);
+  ASSERT_TRUE(write_family(family, root / "drives", folders));
+  refused(root / "drives");
+  ASSERT_TRUE(write_file_atomically(root / "file", "x"));
+  refused(root / "file/drives");
+  family.name = "p11";
+  family.files = {{"p11.toml", "format = 1\nfamily = \"p11\"\nwaers = true\n"}};
+  refused(root / "drives");
 }
 
 TEST_F(NewFamilies, ANameIsOneThatFilesAndLinesCanHave) {

@@ -77,7 +77,7 @@ TEST(Topics, RefuseWhatIsMissingHalfOrTwice) {
   EXPECT_EQ(in_topic(columns + "rows = [{ cells = [\"1\"], line = \"2\", text = \"t\" }]\n"),
             "f.topics.toml:10:9: a row has both 'text' and 'text_zh', or neither");
   const auto twice = kWhole + kTexts + "[[topic]]\n" + kWhole.substr(kHead.size()) + kTexts;
-  EXPECT_EQ(refusal(twice), "f.topics.toml:10:1: topic 'RUN': its name stands twice in the file");
+  EXPECT_EQ(refusal(twice), "f.topics.toml:10:1: topic 'RUN': its name appears twice in the file");
 }
 
 TEST(Topics, SayWhereTheyStandByLinesOrByAClause) {

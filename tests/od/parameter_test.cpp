@@ -87,7 +87,7 @@ TEST(Parameters, WithABadCellAreRefusedWithFileLineAndColumn) {
       "X,,u8,rw,,,,,,,0=a,1=b,N,,,,,,,1\n",
       "p.csv:2: column enum_zh: '1=b' is not a list with the values of the English one (1 is not in it)");
   expect_refused("X,,u8,rw,,,,,,,0=a;0=b,,N,,,,,,,1\n",
-                 "p.csv:2: column enum: '0=a;0=b' is not a list without doubles (0 stands twice)");
+                 "p.csv:2: column enum: '0=a;0=b' is not a list without doubles (0 appears twice)");
   expect_refused("X,,u8,rw,,,,,,,,,N,,,shiny,,,,1\n",
                  "p.csv:2: column flags: 'shiny' is not made of command, volatile and mirror=OBJECT");
   expect_refused("X,,u8,rw,,,,,,,,,,,,,,,,1\n", "p.csv:2: X has no name");
@@ -122,8 +122,11 @@ TEST(Parameters, MayHaveAnyNumberInTheirCells) {
   EXPECT_EQ(refused("min,max", "3,3"), "");
   EXPECT_EQ(refused("min,max", ",3"), "");
   EXPECT_EQ(refused("min,max", "4,3"), "p.csv:2: X: min is above max");
+  EXPECT_EQ(refused("default,min", "1,2"), "p.csv:2: X: the default 1 is below the minimum 2 (raw numbers)");
+  EXPECT_EQ(refused("default,max", "4,3"), "p.csv:2: X: the default 4 is above the maximum 3 (raw numbers)");
+  EXPECT_EQ(refused("default,min,max", "3,3,3"), "");
   EXPECT_EQ(refused("flags", "mirror="),
-            "p.csv:2: column flags: 'mirror=' is not flags with an object behind mirror=");
+            "p.csv:2: column flags: 'mirror=' is not flags with an object after mirror=");
   EXPECT_EQ(refused("flags", "command  volatile"), "");
 }
 

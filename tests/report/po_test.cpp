@@ -31,7 +31,7 @@ TEST(Po, SaysInWhichLineItIsWrong) {
   EXPECT_EQ(refusal_of("msgid \"a\\q\"\nmsgstr \"\""), "x.po:1: unknown escape");
   EXPECT_EQ(refusal_of("hello"), "x.po:1: neither msgid, msgstr, a comment nor a string");
   EXPECT_EQ(refusal_of("msgid \"a\"\nmsgstr \"\"\nmsgid \"a\"\nmsgstr \"\"\n"),
-            "x.po:5: the msgid of line 3 stands twice");
+            "x.po:5: the msgid of line 3 appears twice");
 }
 
 }  // namespace
