@@ -91,7 +91,6 @@ class ParameterConversion {
     const auto named = family_object(index, sub);
     row.object = named.text;
     if (!named.address) return;  // The reader says so.
-    row.entry = dictionary_->find(*named.address);
     if (!named.doubtful.empty())
       return wrong(
           row.line, formatted("sub-index '{}' may be decimal or hexadecimal", named.doubtful),
@@ -101,9 +100,10 @@ class ParameterConversion {
         whole != nullptr && (whole->entries.size() > 1 || whole->code == od::ObjectCode::array ||
                              whole->code == od::ObjectCode::record);
     if (parts && !named.has_sub)
-      wrong(row.line,
-            formatted("object 0x{:04X} has several entries, and no sub-index is given", whole->index),
-            "write the sub-index");
+      return wrong(row.line,
+                   formatted("object 0x{:04X} has several entries, and no sub-index is given", whole->index),
+                   "write the sub-index");
+    row.entry = dictionary_->find(*named.address);
   }
 
   void units(ForeignRow& row, const std::string& unit, const std::string& scale) {
@@ -220,7 +220,8 @@ class ParameterConversion {
     refuse_same_ids(parameters, file_, *errors_);
     for (auto& error : shadowing_ids(parameters, *dictionary_, file_)) errors_->push_back(std::move(error));
     for (const auto& row : rows_)
-      if (!row.object.empty() && row.entry == nullptr && parse_object_address(row.object))
+      if (const auto object = parse_object_address(row.object);
+          object && dictionary_->find(*object) == nullptr)
         wrong(row.line, formatted("{}: object {} is not in the data sheet", row.id, row.object),
               "correct the object, or leave it empty if the bus does not reach the parameter");
   }

@@ -69,7 +69,7 @@ void read_limits(TableRow& row, Parameter& out) {
   out.min = row.value(kMin, out.type);
   out.max = row.value(kMax, out.type);
   if (out.min && out.max && compare_numbers(*out.min, *out.max) > 0)
-    row.refuse(formatted("{}: min is above max", out.id));
+    return row.refuse(formatted("{}: min is above max", out.id));
   if (!out.default_value) return;
   const auto standard = to_string(*out.default_value);
   const std::string hint = "correct the default, the limit or the scale";
