@@ -28,8 +28,8 @@ Result<Change> producer_change(show::Desk& desk, std::uint8_t node, Duration tim
 /// The changes of 1016h that make a drive watch these nodes too: the entry that a node has already, or else a
 /// free one; a drive takes no second entry for a node (CiA 301, 7.5.2.19). Reads the drive, and 1017h of the
 /// producers: what would never or always raise an alarm is told in the notices. Errc::usage where the family
-/// has no 1016h, for its own number, and for one that appears twice; Errc::refused where no entry is free, and
-/// where the time is no longer than the period of the producer.
+/// has no 1016h, for its own number, and for one that appears twice; Errc::refused where no entry is free,
+/// and where the time is no longer than the period of the producer.
 Result<std::vector<Change>> consumer_changes(show::Desk& desk, std::uint8_t node,
                                              std::span<const HeartbeatWatch> watches);
 
