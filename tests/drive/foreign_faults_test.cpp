@@ -32,7 +32,7 @@ TEST(ForeignFaults, FaultsOfAnyKind) {
   EXPECT_EQ(errors[1].message, "f.csv:3: column name: '' is not a name");
 }
 
-TEST(ForeignFaults, BareDigitsAreACodeOnlyUnderSuchAHeading) {
+TEST(ForeignFaults, BareDigitsAreNoCode) {
   const auto panel = convert_fault_table("故障码,名称\n2310,过流\n");
   EXPECT_NE(panel.table.csv.find("\n,,2310,,,过流"), std::string::npos) << panel.table.csv;
   EXPECT_EQ(
