@@ -46,8 +46,16 @@ OpenRequests::Fit OpenRequests::settle(AnswerForm came, TimePoint now, bool awai
   return look_for_copy(settle_confirmation(came, now, awaited, again), again);
 }
 
+/// Whether an answer that repeats the last one may be its copy, and not that to this request. If the request
+/// was already open when the last one came, both are possible. To take a copy for its answer would drop what
+/// was asked between the two, and the answer to that would be taken for one to a later request.
+bool OpenRequests::may_be_copy(const Request& answered, bool awaited) const {
+  return !awaited || answered.transfer != transfer_ || answered.has_waited;
+}
+
 /// What nobody waits for and repeats the last answer is a copy of it.
 OpenRequests::Fit OpenRequests::look_for_copy(Fit fit, bool again) {
+  for (auto& request : open_) request.has_waited = true;
   has_copy_ = again && fit != Fit::ours;
   if (has_copy_) note_copy();
   return fit;
@@ -66,7 +74,8 @@ void OpenRequests::miss_copy() {
   has_copy_ = true;
 }
 
-/// Where two requests write the same, it is all the same whose confirmation came: the value was written.
+/// Where two requests write the same, it is all the same whose confirmation came: the value was written. It
+/// is counted as that of the oldest, since the own request may still be answered.
 OpenRequests::Fit OpenRequests::settle_confirmation(AnswerForm came, TimePoint now, bool awaited,
                                                     bool again) {
   const auto has_form = [&](const Request& request) { return request.answer == came; };
@@ -78,8 +87,12 @@ OpenRequests::Fit OpenRequests::settle_confirmation(AnswerForm came, TimePoint n
   const auto own = std::find_if(oldest, other, [&](const Request& request) {
     return has_form(request) && request.transfer == transfer_;
   });
-  const auto answered = own == other ? oldest : own;
-  return take(answered, now, again && !(awaited && answered->transfer == transfer_));
+  const bool serves = own != other;
+  if (again && may_be_copy(serves ? *own : *oldest, awaited)) return Fit::late;
+  const auto fit = take(oldest, now);
+  if (!serves) return fit;
+  lateness_.reset();
+  return Fit::ours;
 }
 
 OpenRequests::Fit OpenRequests::settle_refusal(const std::function<bool(AnswerForm)>& is_refused,
@@ -88,15 +101,15 @@ OpenRequests::Fit OpenRequests::settle_refusal(const std::function<bool(AnswerFo
                                    [&](const Request& request) { return is_refused(request.answer); });
   // The request of a refusal that comes twice is no longer open: the second may be a copy, or for the next
   // one.
-  const bool may_be_copy = last_ && last_->refuses && is_refused(last_->form);
-  const bool again = may_be_copy && repeats(*last_, now);
+  const bool is_like_last = last_ && last_->refuses && is_refused(last_->form);
+  const bool again = is_like_last && repeats(*last_, now);
   if (oldest == open_.end()) return look_for_copy(Fit::none, again);
   if (!again) (void)repeats({oldest->answer, true}, now);
-  return look_for_copy(take(oldest, now, again && !(awaited && oldest->transfer == transfer_)), again);
+  const bool is_copy = again && may_be_copy(*oldest, awaited);
+  return look_for_copy(is_copy ? Fit::late : take(oldest, now), again);
 }
 
-OpenRequests::Fit OpenRequests::take(std::vector<Request>::iterator answered, TimePoint now, bool is_double) {
-  if (is_double) return Fit::late;
+OpenRequests::Fit OpenRequests::take(std::vector<Request>::iterator answered, TimePoint now) {
   const auto found = *answered;
   const auto last = std::next(answered);
   // Whether a request of somebody else came before one of ours is not known for sure.

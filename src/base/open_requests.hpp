@@ -39,7 +39,8 @@ class OpenRequests {
   /// Another master, or another client of this process, sends a request.
   void overhear(AnswerForm answer, std::optional<std::uint64_t> value, TimePoint now);
   /// An answer came that confirms its request. `awaited`: the present transfer waits for one. What comes
-  /// twice in a row may be one answer that was doubled, and leaves open what nobody waits for.
+  /// twice in a row may be one answer that was doubled, and leaves open what nobody waits for, and what was
+  /// asked before the first of them came.
   Fit settle(AnswerForm came, TimePoint now, bool awaited = true);
   /// A refusal came, for a request whose form `is_refused` accepts.
   Fit settle_refusal(const std::function<bool(AnswerForm)>& is_refused, TimePoint now, bool awaited = true);
@@ -72,7 +73,8 @@ class OpenRequests {
     AnswerForm answer;
     std::optional<std::uint64_t> value;
     TimePoint sent;
-    std::uint64_t transfer;  ///< 0: of somebody else.
+    std::uint64_t transfer;   ///< 0: of somebody else.
+    bool has_waited = false;  ///< Something else was answered since it was sent.
   };
 
   struct Answer {
@@ -85,7 +87,8 @@ class OpenRequests {
   bool repeats(Answer answer, TimePoint now);
   Fit settle_confirmation(AnswerForm came, TimePoint now, bool awaited, bool again);
   Fit look_for_copy(Fit fit, bool again);
-  Fit take(std::vector<Request>::iterator answered, TimePoint now, bool is_double);
+  bool may_be_copy(const Request& answered, bool awaited) const;
+  Fit take(std::vector<Request>::iterator answered, TimePoint now);
 
   std::vector<Request> open_;  ///< Oldest first.
   std::uint64_t transfer_ = 1;

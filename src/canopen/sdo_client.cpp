@@ -299,6 +299,8 @@ void SdoClient::abort(std::uint32_t code, Errc errc, std::string why, std::strin
 }
 
 void SdoClient::finish(Result<Bytes> result) {
+  // Its later messages were answered: the answer to its first one has come.
+  if (result && is_anonymous()) core_.open().forget_own();
   state_ = State::idle;
   boot_up_ = false;
   core_.finish(std::move(result));

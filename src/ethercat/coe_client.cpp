@@ -89,8 +89,7 @@ void CoeClient::on_message(ByteSpan message, TimePoint now) {
   const bool aborts = specifier(message) == canopen::kSdoAbortCommand &&
                       (service == CoeService::sdo_response || service == CoeService::sdo_request);
   if (!aborts && service != CoeService::sdo_response) return;
-  const bool is_anonymous = state_ == State::upload_segment || state_ == State::download_segment;
-  if (!is_anonymous && !is_first_answer(message, now)) return;
+  if (!is_anonymous() && !is_first_answer(message, now)) return;
   if (aborts) return on_abort(message);
   switch (state_) {
     case State::idle:
@@ -237,6 +236,8 @@ void CoeClient::abort(std::uint32_t code, Errc errc, std::string why, std::strin
 }
 
 void CoeClient::finish(Result<Bytes> result) {
+  // As canopen::SdoClient's.
+  if (result && is_anonymous()) core_.open().forget_own();
   state_ = State::idle;
   tx_.reset();
   core_.finish(std::move(result));

@@ -76,6 +76,8 @@ class CoeClient {
 
   bool begin(ObjectAddress object, canopen::Transfer transfer, bool again);
   void begin_upload(TimePoint now);
+  /// As canopen::SdoClient's.
+  bool is_anonymous() const { return state_ == State::upload_segment || state_ == State::download_segment; }
   static std::uint8_t first_command(ByteSpan message);
   bool is_first_answer(ByteSpan message, TimePoint now);
   void check(TimePoint now);
