@@ -35,14 +35,15 @@ bool SdoClient::is_first_answer(const can::Frame& frame, TimePoint now) {
   const auto named = sdo_object(frame);
   const auto kind = sdo_answer_kind(frame.data[0]);
   const bool awaits = state_ != State::idle && state_ != State::copy;
-  const auto fit = core_.settle(frame.data[0], named, now, awaits);
+  // Where it repeats the refusal of an earlier request, this one stays open.
+  const bool is_doubtful = is_shadowed_ && kind == SdoAnswerKind::abort && named == object_;
+  const auto fit = core_.settle(frame.data[0], named, now, awaits && !is_doubtful);
   if (state_ == State::copy && !core_.copy_due(kind_, object_, now)) begin_wanted(now);
   if (!awaits) return false;
   if (state_ == State::resync) {
     if (named == check_ && fit != SdoCore::Fit::none) on_check(now);
     return false;
   }
-  const bool is_doubtful = is_shadowed_ && kind == SdoAnswerKind::abort && named == object_;
   const bool writes = state_ == State::download_initiate && offset_ == data_.size() && !data_.empty();
   if (fit == SdoCore::Fit::late && writes && kind == SdoAnswerKind::write && named == object_) end_in_doubt();
   if (fit == SdoCore::Fit::ours && is_doubtful && writes) end_in_doubt();

@@ -39,13 +39,14 @@ bool CoeClient::is_first_answer(ByteSpan message, TimePoint now) {
   const auto command = first_command(message);
   const auto named = sdo_object(message);
   const auto kind = canopen::sdo_answer_kind(command);
-  const auto fit = core_.settle(command, named, now, state_ != State::idle);
+  // Where it repeats the refusal of an earlier request, this one stays open.
+  const bool is_doubtful = is_shadowed_ && kind == SdoAnswerKind::abort && named == object_;
+  const auto fit = core_.settle(command, named, now, state_ != State::idle && !is_doubtful);
   if (state_ == State::idle) return false;
   if (state_ == State::resync) {
     if (named == check_ && fit != SdoCore::Fit::none) on_check(now);
     return false;
   }
-  const bool is_doubtful = is_shadowed_ && kind == SdoAnswerKind::abort && named == object_;
   const bool writes = state_ == State::download_initiate && offset_ == data_.size();
   if (fit == SdoCore::Fit::late && writes && kind == SdoAnswerKind::write && named == object_) end_in_doubt();
   if (fit == SdoCore::Fit::ours && is_doubtful && writes) end_in_doubt();

@@ -8,6 +8,7 @@
 
 #include "canopen/sdo_client.hpp"
 #include "one_object.hpp"
+#include "transcript.hpp"
 
 namespace servoctl::canopen {
 namespace {
@@ -109,6 +110,28 @@ TEST_P(SdoDoubled, WhatMustNotWaitGoesOutAtOnce) {
   EXPECT_TRUE(client.may_send());
   EXPECT_TRUE(run());
   EXPECT_EQ(store.value, (Bytes{3, 4}));
+}
+
+/// The write waits for a copy of the answer before it, and the refusal that comes instead has a copy as well.
+TEST(SdoDoubledRefusal, ItsCopyDoesNotEndTheWriteThatWasSentBetween) {
+  constexpr ObjectAddress kMode{0x6060, 0};
+  SdoClient client{2, 500ms};
+  TimePoint now{1s};
+  client.start_download(kMode, {1}, now);
+  play(client, now, {"> 602#2F60600001000000", "< 582#6060600000000000"});
+  EXPECT_TRUE(client.take_result().value());
+  client.on_frame(frame("582#6060600000000000"), now);
+  client.start_download(kMode, {2}, now);
+  play(client, now, {"> 602#2F60600002000000", "< 582#6060600000000000"});
+  EXPECT_TRUE(client.take_result().value());
+  client.on_frame(frame("602#4060600000000000"), now);
+  client.start_download(kMode, {3}, now);
+  play(client, now,
+       {"< 582#8060600022000008", "> 602#2F60600003000000", "< 582#8060600022000008",
+        "< 582#6060600000000000"});
+  const auto end = client.take_result();
+  ASSERT_TRUE(end);
+  EXPECT_TRUE(*end);
 }
 
 INSTANTIATE_TEST_SUITE_P(Delays, SdoDoubled, testing::Values(Duration(0ms), Duration(3ms), Duration(20ms)),
