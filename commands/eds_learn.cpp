@@ -3,7 +3,7 @@
 #include "command/output_form.hpp"
 #include "command/standard_scope.hpp"
 #include "settings/learning.hpp"
-#include "settings/scan_file.hpp"
+#include "settings/scan_ranges.hpp"
 
 namespace servoctl::commands {
 namespace {
@@ -67,8 +67,9 @@ const Command kEdsLearn{
         "information). Otherwise it scans: it reads sub-index 0 of each index, then the sub-indices of what is "
         "there. That shows sizes and what is write-only. Names, types and access of standard objects are those "
         "of CiA 301 and CiA 402. Other objects are unsigned and `ro`, because a read shows neither sign nor "
-        "write access; a backup saves those of the maker (2000h to 5FFFh) nevertheless, and `restore` writes "
-        "them only after AccessType is changed to `rw`. Nothing is written to the drive. An interrupted scan is "
+        "write access; a backup saves them nevertheless, and `restore` compares them and writes them only after "
+        "AccessType is changed to `rw`. COB-IDs of the predefined connection set are `$NODEID+0x…`. Nothing is "
+        "written to the drive. An interrupted scan is "
         "kept in FILE.part, and the same command continues it. A drive is not scanned while an axis is enabled; "
         "an EMCY, a restart or an axis that gets enabled ends the scan. A drive that raises an alarm for objects "
         "which it does not have is refused (--despite-alarms). `eds check` and `eds verify` check the file.",

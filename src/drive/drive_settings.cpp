@@ -7,8 +7,6 @@
 
 #include "base/pdo_index.hpp"
 #include "drive/naming.hpp"
-#include "od/data_sheet.hpp"
-#include "od/learned_mark.hpp"
 
 namespace servoctl::drive {
 namespace {
@@ -29,16 +27,12 @@ std::string_view reason(const od::Entry& entry, const od::Parameter* parameter) 
   return {};
 }
 
-bool is_of_maker(const od::Entry& entry) {
-  return entry.address.index >= 0x2000 && entry.address.index < 0x6000 && od::readable(entry.access);
-}
-
 }  // namespace
 
-bool is_learned(const Profile& profile) {
-  if (!profile.of_file || profile.data_sheet.empty()) return false;
-  const auto text = od::read_sheet_file(profile.data_sheet.string());
-  return text && od::is_learned(*text);
+bool is_access_unknown(const Profile& profile, const od::Entry& entry) {
+  if (!profile.unknown_access.contains(entry.address) || entry.access != od::Access::ro) return false;
+  const auto* parameter = profile.made_of_dictionary ? nullptr : profile.parameter(entry.address);
+  return parameter == nullptr || od::writable(parameter->access);
 }
 
 std::vector<std::pair<ObjectAddress, std::string_view>> means_of_writing(const Profile& profile) {
@@ -54,12 +48,11 @@ std::vector<std::pair<ObjectAddress, std::string_view>> means_of_writing(const P
 
 std::vector<DriveSetting> settings_of(const Profile& profile) {
   const auto means = means_of_writing(profile);
-  const bool learned = is_learned(profile);
   std::vector<DriveSetting> out;
   for (const auto& object : profile.dictionary.objects())
     for (const auto& entry : object.entries) {
       const bool is_writable = od::writable(entry.access);
-      if (!is_writable && !(learned && is_of_maker(entry))) continue;
+      if (!is_writable && !is_access_unknown(profile, entry)) continue;
       const auto* parameter = profile.parameter(entry.address);
       const auto mean = std::find_if(means.begin(), means.end(),
                                      [&](const auto& each) { return each.first == entry.address; });

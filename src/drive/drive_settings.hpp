@@ -15,20 +15,20 @@ struct DriveSetting {
   const od::Parameter* parameter = nullptr;
   std::string_view left_out;  ///< `write-only`, `command`, `volatile`, `process data`, `domain`,
                               ///< `memory switch`, `password`
-  /// False: a value of the maker in a file that was learned from a drive, of which nobody said whether it can
-  /// be written. It is saved and compared, and never written.
+  /// False: is_access_unknown(). It is saved and compared, and never written.
   bool is_writable = true;
 };
 
-/// Whether the objects are those of an EDS that `eds learn` made by reading index by index
-/// (od::is_learned()).
-bool is_learned(const Profile& profile);
+/// Whether an entry is `ro` only because nobody knows whether it can be written: its data sheet was learned
+/// by reading index by index (od::EdsFile::learned), the standard does not say `ro`, and no table of the
+/// manual does.
+bool is_access_unknown(const Profile& profile, const od::Entry& entry);
 
 /// What is written for the sake of other writes, and its name: the `memory switch` that says where values go,
 /// the `password` that opens the lock. Part of a restore they would send the rest of it elsewhere.
 std::vector<std::pair<ObjectAddress, std::string_view>> means_of_writing(const Profile& profile);
 
-/// Everything of a drive that can be written, and where is_learned() the maker's values, in rising address.
+/// Everything of a drive that can be written, and what is_access_unknown(), in rising address.
 /// What moves the drive (controlword, targets, offsets, outputs), what is read off it, what starts an action,
 /// and what chooses the memory or opens the lock for the writes themselves are no settings.
 std::vector<DriveSetting> settings_of(const Profile& profile);

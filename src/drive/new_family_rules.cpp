@@ -76,6 +76,14 @@ std::string storing(const od::EdsFile& sheet, NewFamily& family) {
          "# Decide: true if the drive keeps every write in its flash at once (each one wears it).\n# wears = true\n";
 }
 
+std::string open_access(std::string_view source, NewFamily& family) {
+  family.open.emplace_back("access of the maker's objects");
+  return formatted(
+      "\n# Decide: {} was learned from a drive, and does not know which objects can be written. Where the manual\n"
+      "# says so, change AccessType to rw in the .eds beside this file; until then servoctl does not write them.\n",
+      printable(source));
+}
+
 std::string motion(const od::EdsFile& sheet, NewFamily& family) {
   const auto* modes = sheet.dictionary.find(objects::kSupportedModes);
   const bool told = modes != nullptr && modes->default_value;
@@ -96,6 +104,7 @@ std::string motion(const od::EdsFile& sheet, NewFamily& family) {
 
 std::string rules_of_sheet(const od::EdsFile& sheet, std::string_view source, NewFamily& family) {
   auto out = head(sheet, source, family) + identity(sheet, family) + storing(sheet, family);
+  if (sheet.learned) out += open_access(source, family);
   if (is_drive(sheet.dictionary)) out += motion(sheet, family);
   return out;
 }

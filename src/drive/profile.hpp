@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,6 +40,8 @@ struct Profile {
   bool of_file = false;               ///< A file of the user's own, not a family by its name.
   /// The EDS, DCF or ESI the dictionary comes from, as for od::sheet_name(); empty: none.
   std::filesystem::path data_sheet;
+  /// Of a sheet that was learned (od::EdsFile::learned): what is `ro` in it and in no standard.
+  std::set<ObjectAddress> unknown_access;
   std::vector<od::EntryNote> notes;  ///< What a DCF says of its entries, in rising address.
   std::uint8_t configured_node = 0;  ///< That a DCF is the configuration of; 0: none.
   /// Its file of topics and those of its parents, the nearest first: load_topics() reads them.

@@ -6,6 +6,7 @@
 
 #include "base/format.hpp"
 #include "drive/file_identity.hpp"
+#include "drive/learned_access.hpp"
 #include "drive/standard_objects.hpp"
 #include "od/data_sheet.hpp"
 
@@ -61,6 +62,7 @@ bool is_drive(const od::Dictionary& dictionary) {
 
 void take_sheet(Profile& profile, od::EdsFile& file) {
   if (profile.rules.identity.empty()) set_marks(profile.rules, identity_marks(file));
+  profile.unknown_access = unknown_access(file, profile.dictionary);
   if (is_drive(file.dictionary)) od::inherit(file.dictionary, profile.dictionary);
   profile.dictionary = std::move(file.dictionary);
   profile.notes = std::move(file.notes);
@@ -74,14 +76,19 @@ Result<void> add_sheet(Profile& profile, const std::string& word) {
   if (!file) return fail(file.error());
   take_sheet(profile, *file);
   profile.data_sheet = word;
-  if (const auto found = file->diagnostics.size(); found == 1)
-    profile.warnings.push_back(file->error_count() == 1
-                                   ? formatted("{0}: 1 error; `eds check {0}` shows it", word)
-                                   : formatted("{0}: 1 warning; `eds check {0}` shows it", word));
-  else if (found > 1)
-    profile.warnings.push_back(formatted("{0}: {1} errors and {2} warnings; `eds check {0}` lists them", word,
-                                         file->error_count(), file->warning_count()));
+  if (auto findings = findings_text(*file, word); !findings.empty())
+    profile.warnings.push_back(std::move(findings));
   return {};
+}
+
+std::string findings_text(const od::EdsFile& sheet, std::string_view word) {
+  const auto errors = sheet.error_count();
+  const auto warnings = sheet.warning_count();
+  if (errors + warnings == 0) return {};
+  if (errors + warnings > 1)
+    return formatted("{0}: {1} errors and {2} warnings; `eds check {0}` lists them", word, errors, warnings);
+  return errors == 1 ? formatted("{0}: 1 error; `eds check {0}` shows it", word)
+                     : formatted("{0}: 1 warning; `eds check {0}` shows it", word);
 }
 
 }  // namespace servoctl::drive

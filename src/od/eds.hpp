@@ -49,6 +49,7 @@ struct EntryNote {
 struct EdsFile {
   DeviceInfo device;
   bool ethercat = false;     ///< Of an ESI: `device` is what a master knows it by.
+  bool learned = false;      ///< Has the comment kLearnedMark: `ro` may only mean that nobody knows more.
   std::uint8_t node_id = 0;  ///< DCF only, 0 otherwise.
   Dictionary dictionary;
   std::vector<EntryNote> notes;         ///< Only of entries that have one; in rising address.

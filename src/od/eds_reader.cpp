@@ -13,6 +13,7 @@
 #include "od/eds_section.hpp"
 #include "od/eds_types.hpp"
 #include "od/eds_value.hpp"
+#include "od/learned_mark.hpp"
 #include "od/text_encoding.hpp"
 
 namespace servoctl::od {
@@ -28,6 +29,12 @@ bool is_heading(std::string_view text) {
   return text.starts_with("===") || std::none_of(text.begin(), text.end(), is_word);
 }
 
+bool has_learned_mark(const IniSection& section) {
+  return equals_nocase(trim(section.name), "Comments") &&
+         std::any_of(section.keys.begin(), section.keys.end(),
+                     [](const IniKey& key) { return trim(key.value).starts_with(kLearnedWord); });
+}
+
 class EdsReader {
  public:
   EdsReader(std::string_view text, Findings findings)
@@ -38,6 +45,7 @@ class EdsReader {
   EdsFile read() {
     tell_strays();
     for (const auto& section : ini_.sections) take_section(section);
+    out_.learned = std::any_of(ini_.sections.begin(), ini_.sections.end(), has_learned_mark);
     if (device_info_ != nullptr)
       read_device(*device_info_);
     else

@@ -22,6 +22,8 @@ ObjectList list_of(std::uint16_t index) {
 }
 
 std::string default_text(const Entry& entry, const NodeValue& value) {
+  const auto* number = std::get_if<std::uint64_t>(&value.value);
+  if (value.plus_node_id && number != nullptr) return formatted("$NODEID+0x{:X}", *number);
   const auto text = eds_text(entry.type, value.value);
   return value.plus_node_id ? "$NODEID+" + text : text;
 }

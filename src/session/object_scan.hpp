@@ -66,10 +66,10 @@ class ObjectScan {
   ObjectScan(Session& session, std::uint8_t node, ObjectSurvey& survey,
              std::vector<ObjectAddress> statuswords, ScanState& state);
 
-  /// Goes on where the state stands; `keep` is called now and then, and before an error is returned. The
-  /// errors are those of ObjectSurvey::read(), Errc::refused for a drive that is enabled, that restarted, or
-  /// whose answers do not show what it lacks, and Errc::timeout for one that does not answer for what it
-  /// lacks. After an EMCY the indexes that were read meanwhile are noted as refused and are done.
+  /// Continues after the indexes that are done; `keep` is called now and then, and before an error is
+  /// returned. The errors are those of ObjectSurvey::read(), Errc::refused for a drive that is enabled, that
+  /// restarted, or whose answers do not show what it lacks, and Errc::timeout for one that does not answer
+  /// for what it lacks. After an EMCY the indexes that were read meanwhile are noted as refused and are done.
   Result<void> run(const std::function<Result<void>()>& keep);
   /// The abort code by which this node says that it lacks an object, where it is none of CiA 301 for that.
   std::optional<std::uint32_t> lacking_code() const { return lacking_code_; }

@@ -33,7 +33,8 @@ std::string batch_text(const drive::Profile& profile, const Backup& backup);
 /// several times is one of a PDO's procedure (the last value counts), or refused.
 Result<Backup> read_batch_backup(LineReader& lines_of, std::string_view text, const std::string& file,
                                  const drive::Profile& profile, std::uint8_t node);
-/// Whether nothing says that the object is read-only, as a file does that was learned (drive::is_learned()).
+/// Whether nothing says that the object is read-only, as a file that was learned does of what it does not
+/// know (drive::is_access_unknown()).
 bool may_be_written(const drive::Profile* profile, ObjectAddress object);
 /// Before a line that is only shown because that is not so.
 inline constexpr std::string_view kNotKnownWritable = "not known to be writable";

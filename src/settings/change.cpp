@@ -113,29 +113,29 @@ Result<void> prove_unit(const session::DriveUnits& own, const drive::Target& tar
   return {};
 }
 
-tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target,
-                            std::string_view separator = ": ") {
-  error.message = target.in_sentence() + std::string(separator) + error.message;
+tl::unexpected<Error> named(Error error, std::uint8_t node, const drive::Target& target) {
+  error.message = target.in_sentence() + ": " + error.message;
   return fail(show::located(std::move(error), node, target.address));
 }
 
-/// A file that was learned calls read-only what nobody knows to be writable.
 bool is_unknown(const drive::Profile* profile, const drive::Target& target) {
-  const auto index = target.address.index;
-  return profile != nullptr && index >= 0x2000 && index < 0x6000 && drive::is_learned(*profile);
+  return profile != nullptr && target.entry != nullptr && drive::is_access_unknown(*profile, *target.entry);
 }
 
 Result<drive::Meaning> writable_meaning(const drive::Profile* profile, std::uint8_t node,
                                         const drive::Target& target, std::optional<od::DataType> type) {
   auto meaning = drive::meaning(target, node);
+  const auto refused = [&](const std::string& why, std::string hint) {
+    return fail(show::located(make_error(Errc::usage, why, std::move(hint)), node, target.address));
+  };
   if (!od::writable(meaning.access) && is_unknown(profile, target))
-    return named(make_error(Errc::usage, "is not known to be writable: `eds learn` cannot see that",
-                            formatted("where the manual says so, change its AccessType to rw in {}",
-                                      profile->data_sheet.string())),
-                 node, target, " ");
+    return refused(
+        formatted("{} is not known to be writable: `eds learn` cannot see that", target.in_sentence()),
+        formatted("where the manual says so, change its AccessType to rw in {}",
+                  profile->data_sheet.string()));
   if (!od::writable(meaning.access))
-    return named(make_error(Errc::usage, "is read-only", "`read` shows its value; servoctl cannot set it"),
-                 node, target, " ");
+    return refused(formatted("{} is read-only", target.in_sentence()),
+                   "`read` shows its value; servoctl cannot set it");
   if (type) meaning.type = *type;
   return meaning;
 }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <optional>
 #include <set>
+#include <span>
 
 #include "base/format.hpp"
 #include "base/pdo_index.hpp"
 #include "drive/cia402.hpp"
+#include "drive/learned_access.hpp"
 #include "drive/standard_objects.hpp"
 
 namespace servoctl::settings {
@@ -54,16 +56,38 @@ unsigned axis_of(std::uint16_t index) {
   return axis;
 }
 
-/// The same object of the first axis.
-std::uint16_t of_first_axis(std::uint16_t index) {
-  return static_cast<std::uint16_t>(
-      index - (drive::of_axis({kProfileFirst, 0}, axis_of(index)).index - kProfileFirst));
-}
-
 /// `Axis 2: Statusword` where the object is one of a further axis.
 std::string with_axis(std::uint16_t index, const std::string& name) {
   const auto axis = axis_of(index);
   return axis == 1 ? name : formatted("Axis {}: {}", axis, name);
+}
+
+/// CAN-IDs without the node-ID that the predefined connection set has for this COB-ID (CiA 301, 7.3.5).
+std::span<const std::uint32_t> predefined_bases(ObjectAddress object) {
+  static constexpr std::uint32_t kEmergency[] = {0x080};
+  static constexpr std::uint32_t kRequest[] = {0x600};
+  static constexpr std::uint32_t kResponse[] = {0x580};
+  static constexpr std::uint32_t kRpdo[] = {0x200, 0x300, 0x400, 0x500};
+  static constexpr std::uint32_t kTpdo[] = {0x180, 0x280, 0x380, 0x480};
+  if (object == objects::kEmergencyCobId) return kEmergency;
+  if (object == ObjectAddress{0x1200, 1}) return kRequest;
+  if (object == ObjectAddress{0x1200, 2}) return kResponse;
+  const auto place = pdo_at(object.index);
+  if (!place || place->mapping || object.sub != 1) return {};
+  return place->direction == PdoDirection::transmit ? std::span<const std::uint32_t>(kTpdo) : kRpdo;
+}
+
+/// The COB-ID without the node-ID, with its other bits, if it follows the node-ID.
+std::optional<std::uint32_t> predefined_base(const session::ScannedEntry& entry, std::uint8_t node) {
+  constexpr std::uint32_t kExtended = 1U << 29U;
+  if (entry.size != 4 || entry.begin.size() != 4) return std::nullopt;
+  const auto cob_id = static_cast<std::uint32_t>(load_le(entry.begin));
+  const auto can_id = cob_id & (kExtended - 1);
+  const auto bases = predefined_bases(entry.object);
+  const bool follows = (cob_id & kExtended) == 0 && std::any_of(bases.begin(), bases.end(), [&](auto base) {
+                         return base + node == can_id;
+                       });
+  return follows ? std::optional(cob_id - node) : std::nullopt;
 }
 
 class SheetMaker {
@@ -99,13 +123,12 @@ class SheetMaker {
   /// What the standard says of an index; of an axis only where the drive has it.
   const od::Object* standard_object(std::uint16_t index) const {
     if (standard_ == nullptr) return nullptr;
-    if (index < kProfileFirst) return standard_->object(index);
     const auto axis = axis_of(index);
     const auto statusword = drive::of_axis(objects::kStatusword, axis);
     const bool has_axis = std::any_of(state_->entries.begin(), state_->entries.end(),
                                       [&](const auto& each) { return each.object == statusword; });
     const bool is_drive = axis == 1 && drive::is_drive_type(identity_->device_type.value_or(0));
-    return has_axis || is_drive ? standard_->object(of_first_axis(index)) : nullptr;
+    return drive::standard_object(*standard_, index, has_axis || is_drive);
   }
 
   const od::Entry* standard_entry(ObjectAddress address) const {
@@ -162,6 +185,8 @@ class SheetMaker {
     if (entry.object == objects::kDeviceType ||
         (entry.object.index == objects::kVendorId.index && entry.object != objects::kSerialNumber))
       set_default(entry, out);
+    if (const auto base = predefined_base(entry, identity_->node); base && out.type == od::DataType::u32)
+      out.default_value = od::NodeValue{od::Value(std::uint64_t{*base}), true};
     return out;
   }
 

@@ -7,7 +7,7 @@
 #include "base/calendar.hpp"
 #include "base/file.hpp"
 #include "base/format.hpp"
-#include "canopen/sdo_abort.hpp"
+#include "drive/profile_sheet.hpp"
 #include "drive/standard_objects.hpp"
 #include "od/eds_writer.hpp"
 #include "od/learned_mark.hpp"
@@ -16,9 +16,11 @@
 #include "session/online_dictionary.hpp"
 #include "session/scan.hpp"
 #include "session/wary.hpp"
+#include "settings/learned_record.hpp"
 #include "settings/learned_sheet.hpp"
 #include "settings/resumed_scan.hpp"
 #include "settings/scan_file.hpp"
+#include "settings/scan_ranges.hpp"
 #include "settings/stored_eds.hpp"
 
 namespace servoctl::settings {
@@ -37,24 +39,6 @@ Result<void> check_target(const std::filesystem::path& file) {
   return check_writable(scan_file(file));
 }
 
-std::string reason_text(std::uint32_t code) {
-  switch (code) {
-    case session::kWasSilent: return "no answer";
-    case session::kAnsweredWrongly: return "no proper answer, or longer than 64 KiB";
-    case session::kRaisedAlarm: return "not read: an EMCY came while this and its neighbours were read";
-    default: return canopen::sdo_abort_text(code);
-  }
-}
-
-/// What is written, and where it comes from.
-struct Learned {
-  std::string_view source;
-  std::string text;
-  std::string ranges = {};
-  bool resumed = false;
-  std::vector<session::ScanRefusal> left_out = {};
-};
-
 class Learning {
  public:
   Learning(show::Desk& desk, std::uint8_t node, const std::filesystem::path& file,
@@ -72,10 +56,9 @@ class Learning {
     if (const auto written = write_file_atomically(file_, learned->text); !written)
       return fail(written.error());
     if (learned->source == "scan") remove_kept();
-    if (read->error_count() + read->warning_count() > 0)
-      desk_->notices.push_back(formatted("{0}: {1} errors, {2} warnings; `eds check {0}` lists them",
-                                         file_.string(), read->error_count(), read->warning_count()));
-    return record(*learned, *read);
+    if (auto findings = drive::findings_text(*read, file_.string()); !findings.empty())
+      desk_->notices.push_back(std::move(findings));
+    return learned_record(*learned, *read, node_, file_);
   }
 
  private:
@@ -176,7 +159,8 @@ class Learning {
 
   Result<Learned> scan() {
     if (const auto may = may_scan(); !may) return fail(may.error());
-    session::ScanState state{.ranges = wanted_ranges()};
+    session::ScanState state{.ranges =
+                                 options_.ranges.empty() ? ranges_of_axes(statuswords_) : options_.ranges};
     const auto begun = resume_scan(*desk_, scan_file(file_), identity_, state);
     if (!begun) return fail(begun.error());
     const bool resumed = *begun;
@@ -208,7 +192,7 @@ class Learning {
     }
     desk_->notices.push_back(
         "objects that can be read are `ro` unless a standard says more: a read does not show write access, sign "
-        "or limits. A backup saves those of the maker as well; nothing writes them until the file says `rw`");
+        "or limits. A backup saves them as well; nothing writes them until the file says `rw`");
     auto text = text_of(state, unread);
     tell_alarms();
     return Learned{"scan", std::move(text), ranges_text(state.ranges), resumed, state.refusals};
@@ -244,24 +228,6 @@ class Learning {
                   known->family)));
   }
 
-  /// Communication, the maker's objects and the profile; the further axes of it that have a statusword.
-  std::vector<session::IndexRange> wanted_ranges() const {
-    if (!options_.ranges.empty()) return options_.ranges;
-    std::vector<session::IndexRange> out{{0x1000, 0x67FF}};
-    for (unsigned axis = 2; axis <= drive::kMostAxes; ++axis) {
-      const bool is_there = std::count(statuswords_.begin(), statuswords_.end(),
-                                       drive::of_axis(objects::kStatusword, axis)) > 0;
-      if (!is_there) continue;
-      const auto first = drive::of_axis({0x6000, 0}, axis).index;
-      const auto last = drive::of_axis({0x67FF, 0}, axis).index;
-      if (out.back().last + 1 == first)
-        out.back().last = last;
-      else
-        out.push_back({first, last});
-    }
-    return out;
-  }
-
   std::string written(const od::EdsFile& sheet, std::vector<std::string> comments) const {
     auto device = sheet.device;
     if (device.product_name.empty()) device.product_name = identity_.device_name;
@@ -273,38 +239,6 @@ class Learning {
                            .time = time.time,
                            .comments = std::move(comments)};
     return od::write_eds(head, device, sheet.dictionary);
-  }
-
-  report::Record record(const Learned& learned, const od::EdsFile& file) const {
-    std::size_t write_only = 0;
-    for (const auto& object : file.dictionary.objects())
-      write_only += static_cast<std::size_t>(
-          std::count_if(object.entries.begin(), object.entries.end(),
-                        [](const od::Entry& entry) { return !od::readable(entry.access); }));
-    return {{"node", node_},
-            {"file", file_.string()},
-            {"source", learned.source},
-            {"objects", file.dictionary.objects().size()},
-            {"entries", file.dictionary.entry_count()},
-            {"write_only", write_only, report::Show::everywhere, "can only be written"},
-            {"ranges", learned.ranges.empty() ? report::Value() : report::Value(learned.ranges),
-             report::Show::everywhere, "indexes read"},
-            {"resumed", learned.resumed, report::Show::json},
-            {"left_out", left_out_table(learned), report::Show::json},
-            {"left_out", learned.left_out.empty() ? report::Value() : report::Value(left_out_table(learned)),
-             report::Show::text, "not readable, left out"}};
-  }
-
-  static report::Table left_out_table(const Learned& learned) {
-    report::Table table;
-    table.columns = {{"object", "", report::Show::text},
-                     {"index", "", report::Show::json},
-                     {"sub", "", report::Show::json},
-                     {"reason", "why"}};
-    for (const auto& each : learned.left_out)
-      table.rows.push_back(
-          {to_string(each.object), each.object.index, each.object.sub, reason_text(each.abort_code)});
-    return table;
   }
 
   show::Desk* desk_;

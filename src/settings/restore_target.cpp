@@ -1,5 +1,7 @@
 #include "settings/restore_target.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <set>
@@ -7,35 +9,19 @@
 #include "base/format.hpp"
 #include "drive/cia402.hpp"
 #include "drive/drive_settings.hpp"
+#include "drive/naming.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/pdo_change.hpp"
 #include "session/pdo_cob_ids.hpp"
-#include "session/pdo_setup.hpp"
-#include "settings/change.hpp"
 #include "settings/comparison.hpp"
-#include "settings/energising.hpp"
 #include "settings/kept_address.hpp"
 #include "show/identity.hpp"
-#include "show/pdo_check.hpp"
 
 namespace servoctl::settings {
-namespace {
-
-using canopen::Pdo;
-
-/// As `pdo map` and its kin would take it: `all` are the PDOs of the drive as they will be.
-Result<void> check_pdo(const drive::Profile& profile, const Pdo& present, const Pdo& wanted,
-                       std::span<const Pdo> all) {
-  if (present.entries != wanted.entries)
-    if (const auto maps = show::check_mapping(profile, wanted); !maps) return maps;
-  return show::check_communication(profile, present, wanted, all);
-}
-
-}  // namespace
 
 Result<void> RestoreTarget::prepare() {
-  for (const auto step :
-       {&RestoreTarget::check_identity, &RestoreTarget::choose_values, &RestoreTarget::read_present})
+  for (const auto step : {&RestoreTarget::check_identity, &RestoreTarget::choose_values,
+                          &RestoreTarget::read_present, &RestoreTarget::compare_undecided})
     if (const auto done = (this->*step)(); !done) return done;
   if (const auto still = check_standstill(); !still) return still;
   if (const auto fit = check_values(); !fit) return fit;
@@ -101,7 +87,7 @@ Result<void> RestoreTarget::check_at_rest() const {
 
 /// Only what this drive's own data calls a setting is ever written, whatever the file says.
 Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_view reason) {
-  const auto what = formatted("{}:{}: {} is not a setting of this drive: {}", title_, entry.line,
+  const auto what = formatted("{}: {} is not a setting of this drive: {}", place_of(entry.object),
                               to_string(entry.object), reason);
   if (!choice_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
   desk_->notices.push_back(what + "; it is left out");
@@ -142,22 +128,22 @@ Result<void> RestoreTarget::choose_values() {
     if (!setting.is_writable) undecided.insert(setting.entry->address);
   }
   for (const auto& entry : backup_->entries) {
-    const bool is_undecided = entry.bytes && undecided.count(entry.object) > 0;
-    undecided_ += is_undecided ? 1U : 0U;
-    if (is_undecided || is_out_of_reach(entry)) continue;
+    if (is_out_of_reach(entry)) continue;
     const bool address = is_own_address(entry.object);
     if (!entry.bytes || (address && !choice_.with_address)) continue;
     if (const auto answers = check_line_address(entry); !answers) return answers;
     const auto setting = settings.find(entry.object);
     const auto reason =
         setting == settings.end() ? std::string_view("not in its data, or read-only") : setting->second;
+    auto& values = undecided.contains(entry.object) ? unsent_wanted_ : wanted_;
     if (reason.empty())
-      wanted_.emplace(entry.object, address ? *entry.bytes
-                                            : for_node(desk_->profile, entry.object, *entry.bytes,
-                                                       backup_->identity.node, node_));
+      values.emplace(entry.object, address ? *entry.bytes
+                                           : for_node(desk_->profile, entry.object, *entry.bytes,
+                                                      backup_->identity.node, node_));
     else if (const auto left_out = leave_out(entry, reason); !left_out)
       return left_out;
   }
+  for (const auto object : undecided) settings.erase(object);
   if (choice_.keep) add_copies(settings);
   tell_kept();
   return {};
@@ -168,11 +154,6 @@ void RestoreTarget::tell_kept() const {
     desk_->notices.push_back(
         formatted("node {}: {} values of {} have no Modbus register and stay as they are", node_,
                   unreachable_, title_));
-  if (undecided_ > 0)
-    desk_->notices.push_back(formatted(
-        "node {}: {} values of {} stay as they are: `eds learn` could not see whether they can be written; where "
-        "the manual says so, change AccessType to rw in {}",
-        node_, undecided_, title_, desk_->profile->data_sheet.string()));
 }
 
 /// What the drive takes from its parameters at its start has to stand there too, unless the file says what
@@ -209,12 +190,61 @@ Result<void> RestoreTarget::read_present() {
     }
     if (!choice_.force)
       return fail(Errc::negative,
-                  formatted("{}:{}: {}: {}", title_, line_of(entry.object), to_string(entry.object),
+                  formatted("{}: {}: {}", place_of(entry.object), to_string(entry.object),
                             entry.bytes ? "it has another length in the drive" : entry.left_out),
                   "nothing was written; --force restores the rest");
     wanted_.erase(entry.object);
   }
   return {};
+}
+
+/// They are read as the others are: a drive that holds other ones is not restored.
+Result<void> RestoreTarget::compare_undecided() {
+  std::vector<ObjectAddress> objects;
+  for (const auto& value : unsent_wanted_) objects.push_back(value.first);
+  const auto read = session::read_objects(*desk_->session, node_, objects);
+  if (!read) return fail(read.error());
+  constexpr std::size_t kMostListed = 4;
+  std::vector<std::string> differing;
+  for (const auto& entry : *read) {
+    if (entry.bytes) unsent_present_.emplace(entry.object, *entry.bytes);
+    if (entry.bytes != unsent_wanted_.at(entry.object)) differing.push_back(to_string(entry.object));
+  }
+  if (differing.empty()) return {};
+  const auto all = differing.size();
+  left_count_ += all;
+  differing.resize(std::min(all, kMostListed));
+  const auto names = fmt::to_string(fmt::join(differing, ", ")) +
+                     (all > kMostListed ? formatted(" and {} more", all - kMostListed) : std::string());
+  left_.push_back(drive_error(
+      Errc::negative, node_,
+      all == 1 ? formatted("{} differs from {} and is left as it is: it is not known to be writable", names,
+                           title_)
+               : formatted(
+                     "{} values differ from {} and are left as they are: it is not known whether they can be "
+                     "written ({})",
+                     all, title_, names),
+      formatted("where the manual says so, change AccessType to rw in {}",
+                desk_->profile->data_sheet.string())));
+  return {};
+}
+
+std::size_t RestoreTarget::to_write() const {
+  return static_cast<std::size_t>(std::count_if(wanted_.begin(), wanted_.end(), [this](const auto& value) {
+    return present_.at(value.first) != value.second;
+  }));
+}
+
+session::Values RestoreTarget::wanted_and_left() const {
+  auto out = wanted_;
+  out.insert(unsent_wanted_.begin(), unsent_wanted_.end());
+  return out;
+}
+
+session::Values RestoreTarget::present_and_left() const {
+  auto out = present_;
+  out.insert(unsent_present_.begin(), unsent_present_.end());
+  return out;
 }
 
 /// Of a copy that of what it is one of.
@@ -225,94 +255,10 @@ std::uint32_t RestoreTarget::line_of(ObjectAddress object) const {
   return 0;
 }
 
-tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std::string_view what,
-                                           std::string hint) const {
-  const auto copy = copies_.find(object);
-  const auto of = copy == copies_.end() ? "" : to_string(copy->second) + ": its stored copy ";
-  const auto name = of + drive::target_at(desk_->profile, object).in_sentence();
-  auto error =
-      fail(code, formatted("{}:{}: {}: {}", title_, line_of(object), name, what), std::move(hint)).value();
-  error.node = node_;
-  error.object = object;
-  return fail(std::move(error));
-}
-
-/// `outside` tells whether the only thing against it is a limit.
-Result<void> RestoreTarget::check_value(ObjectAddress object, const Bytes& data, bool& outside) const {
-  const auto target = drive::target_at(desk_->profile, object);
-  const auto meaning = drive::fitted(drive::meaning(target, node_), data.size());
-  const auto value =
-      meaning.type_known ? od::decode(meaning.type, data) : Result<od::Value>(od::Value(std::uint64_t{0}));
-  if (!od::writable(meaning.access))
-    return unfit(Errc::negative, object, "is read-only", "nothing was written");
-  if (!value) return unfit(Errc::negative, object, value.error().message, "nothing was written");
-  if (const auto free = check_writable(*desk_, node_, object, data); !free)
-    return unfit(Errc::refused, object, free.error().message, "nothing was written; " + free.error().hint);
-  const auto limits = meaning.type_known ? drive::check_limits(meaning, *value) : Result<void>{};
-  outside = !limits;
-  return limits ? limits : unfit(Errc::negative, object, limits.error().message, "nothing was written");
-}
-
-/// Nothing is written unless everything can be. What the drive holds already is none of it. A backup of ours
-/// says what a drive held, within its limits or not: that is named and stays as it is, and keeps nobody from
-/// the rest. What the file says is wrong before what is made of it.
-Result<void> RestoreTarget::check_values() {
-  const auto of_file = check_each(false);
-  return of_file ? check_each(true) : of_file;
-}
-
-Result<void> RestoreTarget::check_each(bool copies) {
-  for (auto next = wanted_.begin(); next != wanted_.end();) {
-    const auto [object, data] = *next++;
-    if ((copies_.count(object) > 0) != copies) continue;
-    bool outside = false;
-    const auto fits = present_.at(object) == data ? Result<void>() : check_value(object, data, outside);
-    if (fits) continue;
-    auto error = fits.error();
-    const bool skipped = choice_.skip_invalid && error.code == Errc::negative;
-    if (!skipped && (!outside || !backup_->proven)) {
-      if (error.code == Errc::negative) error.hint += "; --skip-invalid restores the rest";
-      return fail(std::move(error));
-    }
-    error.message += "; node " + formatted("{} keeps {}", node_, to_hex(present_.at(object)));
-    error.hint = skipped ? "" : "the drive may not accept its own original value again: `write` it if needed";
-    left_.push_back(std::move(error));
-    wanted_.erase(object);
-    present_.erase(object);
-  }
-  return {};
-}
-
-/// What a drive held as a whole, it takes as a whole; what others wrote, or a part, has to fit the PDOs that
-/// are there.
-Result<void> RestoreTarget::check_pdos() {
-  if (backup_->proven) return {};
-  const auto changes = [this](const auto& value) {
-    return pdo_at(value.first.index) && present_.at(value.first) != value.second;
-  };
-  if (std::none_of(wanted_.begin(), wanted_.end(), changes)) return {};
-  const std::uint8_t nodes[] = {node_};
-  auto values = std::move(session::read_pdo_values(*desk_->session, desk_->profile, nodes).front());
-  if (!values) return fail(values.error());
-  const auto present = session::pdos_of(*values);
-  for (const auto& [object, data] : wanted_)
-    if (pdo_at(object.index)) values->insert_or_assign(object, data);
-  const auto wanted = session::pdos_of(*values);
-  for (const auto& was : present) {
-    const auto same = [&](const Pdo& pdo) {
-      return pdo.direction == was.direction && pdo.number == was.number;
-    };
-    const auto of_it = [&](const auto& value) {
-      return changes(value) &&
-             (value.first.index == was.communication_index() || value.first.index == was.mapping_index());
-    };
-    const auto now = std::find_if(wanted.begin(), wanted.end(), same);
-    if (now == wanted.end() || std::none_of(wanted_.begin(), wanted_.end(), of_it)) continue;
-    if (const auto fits = check_pdo(*desk_->profile, was, *now, wanted); !fits)
-      return unfit(Errc::refused, std::find_if(wanted_.begin(), wanted_.end(), of_it)->first,
-                   fits.error().message, "nothing was written; " + fits.error().hint);
-  }
-  return {};
+/// A drive that is cloned has no lines.
+std::string RestoreTarget::place_of(ObjectAddress object) const {
+  const auto line = line_of(object);
+  return line == 0 ? title_ : formatted("{}:{}", title_, line);
 }
 
 }  // namespace servoctl::settings

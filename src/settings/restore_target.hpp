@@ -44,9 +44,16 @@ class RestoreTarget {
   /// The same without the COB-IDs that are not of the backup: their PDOs are only made invalid for a while.
   const session::Values& asked() const { return asked_; }
   const session::Values& present() const { return present_; }
-  /// Values of a backup of ours that are outside of the family's limits, and why: the drive held them, but
-  /// none is sent. They are not among wanted().
+  /// What differs and is not sent, and why: values of a backup of ours that are outside of the family's
+  /// limits, and all those together of which nobody knows whether they can be written
+  /// (drive::is_access_unknown()). They are not among wanted().
   const std::vector<Error>& left() const { return left_; }
+  std::size_t left_count() const { return left_count_; }
+  /// How many of wanted() the drive holds otherwise.
+  std::size_t to_write() const;
+  /// wanted() and present() with all that is compared and not sent.
+  session::Values wanted_and_left() const;
+  session::Values present_and_left() const;
   /// Whether node-ID or bitrate of the backup is another, and not wanted.
   bool keeps_address() const { return keeps_address_; }
 
@@ -62,12 +69,14 @@ class RestoreTarget {
   void tell_kept() const;
   void add_copies(const std::map<ObjectAddress, std::string_view>& settings);
   Result<void> read_present();
+  Result<void> compare_undecided();
   bool same_length(ObjectAddress object, const Bytes& data) const;
   std::uint32_t line_of(ObjectAddress object) const;
   Result<void> check_values();
   Result<void> check_each(bool copies);
   Result<void> check_value(ObjectAddress object, const Bytes& data, bool& outside) const;
   Result<void> check_pdos();
+  std::string place_of(ObjectAddress object) const;
   tl::unexpected<Error> unfit(Errc code, ObjectAddress object, std::string_view what, std::string hint) const;
 
   show::Desk* desk_;
@@ -81,9 +90,11 @@ class RestoreTarget {
   session::Values present_;
   std::map<ObjectAddress, ObjectAddress> copies_;  ///< Added to wanted_ for what is to be kept, and of what.
   std::vector<Error> left_;
+  std::size_t left_count_ = 0;
+  session::Values unsent_wanted_;  ///< Outside of the limits, or not known to be writable.
+  session::Values unsent_present_;
   bool keeps_address_ = false;
   std::size_t unreachable_ = 0;  ///< Values without a Modbus register, where it is reached over Modbus.
-  std::size_t undecided_ = 0;    ///< Values of which nobody knows whether they can be written.
 };
 
 }  // namespace servoctl::settings

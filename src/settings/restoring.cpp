@@ -76,24 +76,26 @@ class Restoring {
     RestoreTarget target(*desk_, *backup_, title_, node_, choice);
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     if (const auto same = hold_to_expected(target.present()); !same) return fail(same.error());
-    auto comparison = compare(desk_->profile, {formatted("node {}", node_), node_, target.present()},
-                              {title_, node_, target.wanted()}, true, desk_->chinese);
+    auto comparison = compare(desk_->profile, {formatted("node {}", node_), node_, target.present_and_left()},
+                              {title_, node_, target.wanted_and_left()}, true, desk_->chinese);
     left_over_ = target.left();
+    left_count_ = target.left_count();
+    const auto to_write = target.to_write();
     if (options_.keep)
       doubts_ = doubts_of_keeping(*desk_->profile, node_, title_, target.present(), target.asked());
     for (const auto& doubt : doubts_) desk_->notices.push_back(doubt);
-    const bool idle = comparison.different == 0 && !options_.keep && left_.means.empty();
+    const bool idle = to_write == 0 && !options_.keep && left_.means.empty();
     keeps_address_ = target.keeps_address();
     if (idle) return take_away_journals(result(std::move(comparison.record), said(same()), {}));
     if (desk_->dry_run) {
       end_ = RestoreEnd::planned;
       return planned(target);
     }
-    auto agreed = desk_->confirm(question(comparison.different) +
-                                 power_question(*desk_, node_, target.present(), target.wanted()));
+    auto agreed =
+        desk_->confirm(question(to_write) + power_question(*desk_, node_, target.present(), target.wanted()));
     if (agreed) agreed = target.check_standstill();
     if (!agreed) return fail(agreed.error());
-    differs_ = comparison.different > 0 || options_.resume;
+    differs_ = to_write > 0 || options_.resume;
     if (const auto noted = note(target); !noted) return fail(noted.error());
     if (const auto back = put_means_back(*desk_->session, left_); !back) return fail(back.error());
     return carry_out(target, std::move(comparison.record));
@@ -139,9 +141,12 @@ class Restoring {
   }
 
   std::string question(std::size_t different) const {
+    const auto* const rest =
+        options_.keep ? "Store them in the drive" : "Restore its memory switch and password";
     if (different == 0)
-      return formatted("All values of node {} already match {}. {}?", node_, title_,
-                       options_.keep ? "Store them in the drive" : "Restore its memory switch and password");
+      return left_count_ == 0
+                 ? formatted("All values of node {} already match {}. {}?", node_, title_, rest)
+                 : formatted("All other values of node {} already match {}. {}?", node_, title_, rest);
     if (different == 1) return formatted("Write 1 value of {} to node {}?", title_, node_);
     return formatted("Write {} values of {} to node {}?", different, title_, node_);
   }
@@ -209,7 +214,7 @@ class Restoring {
     if (differs_)
       desk_->notices.push_back(
           formatted("the old values of node {} are in {}", node_, file_->path().string()));
-    const auto* const stored = keeps_address_ ? "nothing else differs; stored" : "nothing differs; stored";
+    const auto* const stored = leaves_some() ? "nothing else differs; stored" : "nothing differs; stored";
     const auto* const done = differs_ || !options_.keep ? "restored" : stored;
     if (!outcome.failure) return take_away_journals(result(std::move(record), said(done), outcome));
     for (auto& error : errors_of(outcome, desk_->profile, node_)) desk_->errors.push_back(std::move(error));
@@ -222,9 +227,10 @@ class Restoring {
     return out;
   }
 
-  const char* same() const { return keeps_address_ ? "nothing else differs" : "nothing differs"; }
+  bool leaves_some() const { return keeps_address_ || left_count_ > 0; }
+  const char* same() const { return leaves_some() ? "nothing else differs" : "nothing differs"; }
   std::string said(std::string state) const {
-    return left_over_.empty() ? state : formatted("{}; {} left as it is", state, left_over_.size());
+    return left_count_ == 0 ? state : formatted("{}; {} left as it is", state, left_count_);
   }
 
   /// Of all values; null where it is not known of one.
@@ -250,7 +256,8 @@ class Restoring {
   RestoreAttempt attempt_;
   std::optional<BeforeFile> file_;
   std::optional<FileLock> undone_lock_;
-  std::vector<Error> left_over_;     ///< Values outside of the limits.
+  std::vector<Error> left_over_;     ///< As RestoreTarget::left().
+  std::size_t left_count_ = 0;       ///< Values that differ and are not written.
   std::vector<std::string> doubts_;  ///< Of keeping.
   RestoreJournal left_;              ///< Of what was cut off and is gone on with, or undone.
   bool differs_ = true;              ///< The drive does not hold the values yet.

@@ -27,7 +27,7 @@ struct RestoringOptions {
 /// What came of it.
 struct Restored {
   report::Value answer;
-  bool failed = false;  ///< Beyond values that are outside of the limits and left as they are.
+  bool failed = false;  ///< Beyond values that are left as they are (RestoreTarget::left()).
   RestoreEnd end = RestoreEnd::idle;
   std::vector<ObjectAddress> in_flash = {};  ///< As in session::RestoreOutcome.
   std::filesystem::path before = {};         ///< Where the old values are, if any were noted.

@@ -6,6 +6,7 @@
 #include "base/file.hpp"
 #include "base/format.hpp"
 #include "settings/scan_file.hpp"
+#include "settings/scan_ranges.hpp"
 
 namespace servoctl::settings {
 namespace {
@@ -24,16 +25,17 @@ Result<bool> resume_scan(show::Desk& desk, const std::filesystem::path& kept_in,
   const auto text = read_file(kept_in);
   if (!text) return fail(text.error());
   if (!is_scan_file(*text)) return refuse_scan(formatted("{} is no scan of servoctl", kept_in.string()));
-  const auto begin_anew = [&](std::string_view why) {
-    desk.notices.push_back(formatted("{}: {}; the scan begins anew, and replaces it", kept_in.string(), why));
+  const auto start_again = [&](std::string_view why) {
+    desk.notices.push_back(
+        formatted("{}: {}; the scan starts again, and replaces it", kept_in.string(), why));
     return false;
   };
   auto kept = read_scan(*text);
-  if (!kept) return begin_anew("it is damaged, or of another version");
+  if (!kept) return start_again("it is damaged, or of another version");
   if (kept->identity != identity_text(desk.session->url(), identity))
     return refuse_scan(formatted("{} keeps the scan of another drive, node or bus", kept_in.string()));
   if (is_one_of_many(identity))
-    return begin_anew("the drive has no serial number that tells it from others of its kind (1018h)");
+    return start_again("the drive has no serial number that tells it from others of its kind (1018h)");
   if (kept->state.ranges != state.ranges)
     return refuse_scan(formatted("{} keeps a scan of {}", kept_in.string(), ranges_text(kept->state.ranges)));
   state = std::move(kept->state);

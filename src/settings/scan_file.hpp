@@ -33,10 +33,4 @@ bool is_scan_file(std::string_view text);
 /// Empty for what scan_text() did not write whole, or what contradicts itself.
 std::optional<KeptScan> read_scan(std::string_view text);
 
-/// `2000-2FFF,6000-67FF`, also as `0x2000` and `2000h`: 1000h to 9FFFh, none twice, at most 16. Errc::usage.
-Result<std::vector<session::IndexRange>> parse_ranges(std::string_view text);
-std::string ranges_text(const std::vector<session::IndexRange>& ranges);
-/// The indexes that a scan could not read, `2100-210F`; how many, where they are in many places.
-std::string unread_text(const session::ScanState& state);
-
 }  // namespace servoctl::settings

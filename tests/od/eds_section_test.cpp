@@ -104,5 +104,17 @@ TEST(SectionName, ThatIsLongIsNotRespelt) {
   EXPECT_EQ(respelt_section_name(spaced(41)), std::nullopt);
 }
 
+TEST(LearnedMark, IsFoundAsEditorsWriteTheComment) {
+  constexpr std::string_view kObject = "[2001]\nParameterName=x\nObjectType=7\nDataType=7\nAccessType=ro\n";
+  for (const std::string comment :
+       {"[Comments]\nLines=1\nLine1=servoctl-learned: access, sign and limits\n",
+        "[Comments]\r\nLines=2\r\nLine1=a\r\nLine2 = servoctl-learned: access\r\n",
+        "[comments]\nLine1 =   servoctl-learned\n"})
+    EXPECT_TRUE(read_sheet(comment + std::string(kObject)).learned) << comment;
+  for (const std::string other : {"", "[Comments]\nLine1=it was not servoctl-learned: it is the maker's\n",
+                                  "[Tools]\nLine1=servoctl-learned: x\n", ";Line1=servoctl-learned: x\n"})
+    EXPECT_FALSE(read_sheet(other + std::string(kObject)).learned) << other;
+}
+
 }  // namespace
 }  // namespace servoctl::od

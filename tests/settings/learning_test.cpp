@@ -8,7 +8,6 @@
 #include <string>
 
 #include "learning_world.hpp"
-#include "od/learned_mark.hpp"
 #include "settings/dictionary_check.hpp"
 #include "settings/scan_file.hpp"
 #include "tests/show/audiences.hpp"
@@ -106,6 +105,29 @@ TEST_F(LearningTest, ADriveThatAlwaysAnswersFourBytesKeepsTheTypesOfTheStandard)
   EXPECT_NE(sheet.dictionary.object(0x2F00)->name.find("size unknown"), std::string::npos);
 }
 
+TEST_F(LearningTest, CobIdsThatFollowTheNodeIdSaySo) {
+  node->objects.values[{0x1014, 0}] = {0x81, 0, 0, 0x80};
+  node->objects.values[{0x1400, 1}] = {0x01, 0x02, 0, 0};
+  node->objects.values[{0x1401, 1}] = {0x02, 0x03, 0, 0};
+  node->objects.values[{0x1800, 1}] = {0x81, 0x01, 0, 0xC0};
+  node->objects.values[{0x1801, 1}] = {0x81, 0x02, 0, 0xA0};
+  node->objects.values[{0x1802, 1}] = {0x01, 0x02, 0, 0};
+  const auto sheet = learned({.ranges = {{0x1000, 0x1018}, {0x1200, 0x1200}, {0x1400, 0x1803}}});
+  const auto follows = [&](ObjectAddress object, std::uint64_t base) {
+    const auto& said = sheet.dictionary.find(object)->default_value;
+    return said && said->plus_node_id && said->value == od::Value(base);
+  };
+  EXPECT_TRUE(follows({0x1014, 0}, 0x8000'0080)) << "with its other bits";
+  EXPECT_NE(content_of(file).find("DefaultValue=$NODEID+0x80000080\n"), std::string::npos);
+  EXPECT_TRUE(follows({0x1200, 1}, 0x600));
+  EXPECT_TRUE(follows({0x1200, 2}, 0x580));
+  EXPECT_TRUE(follows({0x1400, 1}, 0x200));
+  EXPECT_TRUE(follows({0x1800, 1}, 0xC000'0180));
+  for (const ObjectAddress other : {ObjectAddress{0x1401, 1}, {0x1801, 1}, {0x1802, 1}})
+    EXPECT_FALSE(sheet.dictionary.find(other)->default_value)
+        << to_string(other) << ": of another node, of 29 bits, of another service";
+}
+
 TEST_F(LearningTest, NamesOfDrivesAreForDrives) {
   node->objects.values[{0x1000, 0}] = {0x91, 0x01, 3, 0};
   node->objects.remove(0x6041);
@@ -127,8 +149,7 @@ TEST_F(LearningTest, WhatIsNoFileIsRefusedBeforeTheFirstRead) {
 
 TEST_F(LearningTest, AScanIsMarkedAsOne) {
   learned({.ranges = {{0x1000, 0x1018}}, .scans = true});
-  EXPECT_TRUE(od::is_learned(content_of(file)));
-  EXPECT_FALSE(od::is_learned(content_of(std::string(source_dir()) + "/eds/dm/dm.eds")));
+  EXPECT_TRUE(od::read_eds(content_of(file), "drive.eds").value().learned);
 }
 
 TEST_F(LearningTest, OneValueOfADriveThatDoesNotLookAtTheSubIndexIsOne) {
@@ -172,16 +193,6 @@ TEST_F(LearningTest, ObjectsThatRefuseToBeReadAreLeftOutAndTold) {
   const auto json = report::to_json(report::Value(*done));
   EXPECT_NE(json.find(R"("left_out":[{"index":10752,"sub":0,"reason":"no answer"}])"), std::string::npos)
       << json;
-}
-
-session::ScanState sample_scan() {
-  session::ScanState state{.ranges = {{0x2000, 0x2FFF}, {0x6000, 0x67FF}}, .done = 77};
-  state.entries = {{{0x2000, 0}, true, 2, {1, 2}},
-                   {{0x2000, 0xFE}, false},
-                   {{0x2001, 0}, true, 0, {}},
-                   {{0x2002, 0}, true, 400, Bytes(session::kScannedBytes, 0xAB)}};
-  state.refusals = {{{0x2003, 0}, 0x0800'0022}, {{0x2004, 1}, 0}};
-  return state;
 }
 
 }  // namespace

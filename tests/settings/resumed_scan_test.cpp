@@ -78,7 +78,7 @@ TEST_F(ResumedScanTest, AScanThatWasCutOrHasNoSerialNumberBeginsAnew) {
     begin_anew();
     if (!has_serial) node->objects.values[{0x1018, 4}] = {0, 0, 0, 0};
     ASSERT_TRUE(learn());
-    EXPECT_NE(desk.notices.front().find("begins anew"), std::string::npos) << desk.notices.front();
+    EXPECT_NE(desk.notices.front().find("starts again"), std::string::npos) << desk.notices.front();
     std::filesystem::remove(file);
   }
 }

@@ -6,9 +6,20 @@
 #include <string>
 
 #include "settings/scan_file.hpp"
+#include "settings/scan_ranges.hpp"
 
 namespace servoctl::settings {
 namespace {
+
+session::ScanState sample_scan() {
+  session::ScanState state{.ranges = {{0x2000, 0x2FFF}, {0x6000, 0x67FF}}, .done = 77};
+  state.entries = {{{0x2000, 0}, true, 2, {1, 2}},
+                   {{0x2000, 0xFE}, false},
+                   {{0x2001, 0}, true, 0, {}},
+                   {{0x2002, 0}, true, 400, Bytes(session::kScannedBytes, 0xAB)}};
+  state.refusals = {{{0x2003, 0}, 0x0800'0022}, {{0x2004, 1}, 0}};
+  return state;
+}
 
 TEST(ScanFile, ReadsWhatItWrites) {
   const auto state = sample_scan();
