@@ -149,7 +149,7 @@ class Init {
     axis.increments = settings->increments;
     if (settings->unstated > 0)
       context_->notices.push_back(formatted(
-          "node {}: {} settings are not held against the factory's, which the data of {} do not state: "
+          "node {}: {} settings are not compared with the factory's, which the data of {} do not state: "
           "`backup` saves them all",
           axis.node, settings->unstated, axis.family));
     if (settings->pdos.empty()) return;

@@ -26,6 +26,9 @@ Result<report::Value> run_cabinet_plan(Context& context, const Arguments& argume
   auto looks = cabinet::look_at_all(context, **cabinet, *stations, choice);
   if (choice.only.empty()) (void)cabinet::find_displaced(context, *stations, choice, looks);
   cabinet::tell_looks(context, looks);
+  for (const auto& look : looks)
+    for (const auto& error : look.plan ? look.plan->left : std::vector<Error>())
+      context.errors.push_back(cabinet::of_axis(*look.axis, error));
   if (context.errors.empty() && cabinet::any_to_do(looks))
     context.errors.push_back(cabinet::something_to_do(**cabinet, looks));
   return report::Value(cabinet::plan_record(**cabinet, looks));

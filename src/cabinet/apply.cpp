@@ -68,15 +68,16 @@ class Applying {
   }
 
   bool has_work(const AxisRun& run) const {
-    return run.look->plan && (run.look->plan->different > 0 || options_->resume);
+    return run.look->plan && (run.look->plan->to_write > 0 || options_->resume);
   }
 
   Result<void> may_begin() {
     for (auto& run : runs_)
-      if (run.look->plan && !run.look->to_do() && !options_->resume) run.end = AxisEnd::nothing_to_do;
+      if (run.look->plan && !has_work(run)) run.end_without_write();
     if (!options_->all_or_nothing) return {};
     for (const auto& run : runs_) {
       auto why = run.look->plan ? hindrance(run) : std::optional(run.look->plan.error());
+      if (!why && run.look->plan && !run.look->plan->left.empty()) why = run.look->plan->left.front();
       if (!why) continue;
       auto error = of_axis(*run.look->axis, std::move(*why));
       error.hint =
@@ -108,7 +109,7 @@ class Applying {
     std::size_t axes = 0;
     for (const auto& run : runs_) {
       if (!has_work(run)) continue;
-      values += run.look->plan->different;
+      values += run.look->plan->to_write;
       ++axes;
     }
     return desk_->confirm(formatted("Write {} value{} to {} ax{}?", values, values == 1 ? "" : "s", axes,
@@ -240,7 +241,7 @@ class Applying {
   void tell() {
     tell_looks(*desk_, looks_);
     for (auto& run : runs_) {
-      for (auto& error : run.errors) desk_->errors.push_back(of_axis(*run.look->axis, std::move(error)));
+      for (const auto& error : run.errors) desk_->errors.push_back(of_axis(*run.look->axis, error));
       for (const auto& notice : run.notices) desk_->notices.push_back(of_axis(*run.look->axis, notice));
     }
     for (const auto& run : runs_)

@@ -119,10 +119,12 @@ class AxisPlanner {
     out_.present = target.present();
     const auto node = axis_->node;
     const auto comparison = settings::compare(
-        desk_->profile, {"drive", node, target.present()},
-        {resumes_ ? "interrupted apply" : cabinet_->file.filename().string(), node, target.wanted()}, true,
-        desk_->chinese);
+        desk_->profile, {"drive", node, target.present_and_left()},
+        {resumes_ ? "interrupted apply" : cabinet_->file.filename().string(), node, target.wanted_and_left()},
+        true, desk_->chinese);
     out_.different = comparison.different;
+    out_.to_write = target.to_write();
+    out_.left = target.left();
     out_.compared = comparison.compared;
     out_.differences = differences(table_of(comparison, "present", "wanted"));
     auto needs = needs_of(*desk_->session, *desk_->profile, node, target.present(), target.wanted());
@@ -176,7 +178,7 @@ class AxisPlanner {
     if (!state) return fail(state.error());
     if (*state != session::NodeState::operational) return false;
     desk_->notices.push_back(formatted(
-        "node {} is in OP: its PDOs are those of the process data, and not held against the factory's",
+        "node {} is in OP: its PDOs are those of the process data, and not compared with the factory's",
         axis_->node));
     return true;
   }

@@ -29,7 +29,9 @@ struct AxisPlan {
   settings::Backup wanted;       ///< Everything the file says of it, changed or not.
   session::Values present;       ///< What the drive held of that.
   std::filesystem::path before;  ///< Where what it holds is noted before the first write.
-  std::size_t different = 0;     ///< Values that are to be written.
+  std::size_t different = 0;     ///< Values that the drive holds otherwise.
+  std::size_t to_write = 0;      ///< Those of them that are not left as they are.
+  std::vector<Error> left;       ///< As settings::RestoreTarget::left().
   std::size_t compared = 0;
   report::Value differences;  ///< A table: what each is, what the drive holds, what the file says.
   report::Value unlisted;     ///< A table: what is not in the file, nor as the factory left it; null: none.

@@ -38,7 +38,7 @@ List row(const AxisRun& run, bool keep) {
                                           : show::error_record(run.errors.front());
   return {axis.name,        axis.bus,
           axis.node,        axis.family,
-          text_of(run.end), run.is_written() ? run.look->plan->different : 0U,
+          text_of(run.end), run.is_written() ? run.look->plan->to_write : 0U,
           kept(run, keep),  restart != nullptr ? Value(to_string(*restart)) : Value(),
           std::move(names), error};
 }
@@ -77,6 +77,11 @@ AxisEnd end_of(RestoreEnd end) {
 bool AxisRun::has_failed() const {
   return end == AxisEnd::untouched || end == AxisEnd::not_kept || end == AxisEnd::as_before ||
          end == AxisEnd::flash_changed || end == AxisEnd::failed;
+}
+
+void AxisRun::end_without_write() {
+  errors = look->plan->left;
+  if (errors.empty()) end = AxisEnd::nothing_to_do;
 }
 
 void AxisRun::end_undo(const Result<settings::Restored>& done) {

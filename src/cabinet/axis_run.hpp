@@ -40,6 +40,8 @@ struct AxisRun {
   bool is_written() const { return end == AxisEnd::applied || end == AxisEnd::not_kept; }
   /// It did not come to be as wanted.
   bool has_failed() const;
+  /// Nothing can be written to it; what is left as it is (AxisPlan::left) is its errors.
+  void end_without_write();
   /// It was to be put back, because another axis failed.
   void end_undo(const Result<settings::Restored>& done);
 };

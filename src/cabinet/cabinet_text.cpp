@@ -1,5 +1,7 @@
 #include "cabinet/cabinet_text.hpp"
 
+#include <algorithm>
+
 #include "base/format.hpp"
 #include "base/text.hpp"
 #include "drive/drive_settings.hpp"
@@ -120,8 +122,15 @@ std::string axis_text(const std::string& bus, const FoundAxis& axis, bool chines
   return out;
 }
 
-/// What a file that was learned says of the maker's objects is nothing to write.
-bool is_writable(const drive::DriveSetting& setting) { return setting.is_writable; }
+/// Settings of which nobody knows whether they can be written are nothing for the file.
+bool goes_into_file(const drive::DriveSetting& setting) { return setting.is_writable; }
+
+std::size_t count_undecided(const drive::Profile& profile) {
+  const auto all = drive::settings_of(profile);
+  return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [](const auto& setting) {
+    return !setting.is_writable && setting.left_out.empty();
+  }));
+}
 
 }  // namespace
 
@@ -129,9 +138,10 @@ Result<FoundSettings> find_settings(show::Desk& desk, std::uint8_t node) {
   FoundSettings out;
   const std::uint8_t nodes[] = {node};
   const auto snapshot =
-      std::move(session::take_snapshots(*desk.session, *desk.profile, nodes, is_writable).front());
+      std::move(session::take_snapshots(*desk.session, *desk.profile, nodes, goes_into_file).front());
   if (!snapshot) return fail(snapshot.error());
   const auto factory = settings::factory_side(*desk.profile, node);
+  out.unstated = count_undecided(*desk.profile);
   bool other_pdos = false;
   for (const auto& entry : snapshot->entries) {
     const auto usual = factory.values.find(entry.object);

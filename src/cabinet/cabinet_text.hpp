@@ -33,7 +33,7 @@ struct FoundAxis {
 /// whose text is the second of the pair, empty where they are as from the factory. Node-ID and bitrate are
 /// left out, and what cannot be said in one value. Only reads.
 struct FoundSettings {
-  std::size_t unstated = 0;  ///< Settings without a factory value to hold them against.
+  std::size_t unstated = 0;  ///< Settings without a known factory value, also those left out of the file.
   std::vector<std::string> parameters;
   std::optional<std::uint16_t> heartbeat_ms;
   std::optional<double> increments;  ///< In one turn of the motor, where the drive tells them.
