@@ -25,8 +25,8 @@ std::string statusword_words(std::uint16_t statusword, std::int8_t mode, Chinese
 std::string controlword_words(std::uint16_t controlword, std::int8_t mode, Chinese chinese = nullptr);
 
 /// Which switches are actuated by the digital inputs (60FDh), `negative limit, home switch`; `no limit, no
-/// home switch` where none is. Where the family does not say which bit and level belong to a switch, which bits
-/// are set: makers differ in both.
+/// home switch` where none is. Where the family does not say which bit and level belong to a switch, which
+/// bits are set: makers differ in both.
 std::string switch_words(const MotionRules& rules, std::uint32_t inputs, Chinese chinese = nullptr);
 
 }  // namespace servoctl::drive
