@@ -144,7 +144,9 @@ Result<fs::path> try_family(const NewFamily& family, const fs::path& folder,
   if (!place) return place;
   for (const auto& one : {folder, folder.parent_path()})
     if (const auto writable = check_writable(one); !writable) return fail(writable.error());
-  const auto beside = fs::temp_directory_path();
+  std::error_code error;
+  const auto beside = fs::temp_directory_path(error);
+  if (error) return cannot_make("$TMPDIR", error.value());
   const DraftFolder draft(beside, family.name);
   if (const auto sound = write_draft(draft, beside, family, folders); !sound) return fail(sound.error());
   return place;

@@ -4,16 +4,12 @@
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "motion/power.hpp"
+#include "session/addressing.hpp"
 
 namespace servoctl::motion {
 namespace {
 
 constexpr Duration kAxisPause = std::chrono::milliseconds(5);
-
-bool is_asked(session::Session& session, std::uint8_t node) {
-  const auto type = session.upload(node, objects::kDeviceType);
-  return type && drive::is_drive_type(load_le(*type));
-}
 
 std::optional<std::uint16_t> word_in(const Result<Bytes>& answer) {
   return answer ? std::optional(static_cast<std::uint16_t>(load_le(*answer))) : std::nullopt;
@@ -28,21 +24,6 @@ std::vector<OtherAxis> listed_axes(session::Session& session, const drive::Profi
     if (profile.dictionary.find(axis.statusword_object()) == nullptr) continue;
     axis.statusword = word_in(session.upload(node, axis.statusword_object()));
     out.push_back(axis);
-  }
-  return out;
-}
-
-/// Those that answer. One that is silent about what it lacks is not asked on, nor is one that sent an EMCY.
-std::vector<OtherAxis> answering_axes(session::Session& session, std::uint8_t node) {
-  std::vector<OtherAxis> out;
-  if (session.wary_of(node) != nullptr || !is_asked(session, node)) return out;
-  const auto alarms = session.watch().alarms(node);
-  for (unsigned number = 2; number <= drive::kMostAxes && session.watch().alarms(node) == alarms; ++number) {
-    OtherAxis axis{number, {}};
-    const auto answer = session.upload(node, axis.statusword_object());
-    if (!answer && answer.error().code != Errc::sdo_abort) break;
-    axis.statusword = word_in(answer);
-    if (answer) out.push_back(axis);
   }
   return out;
 }
@@ -65,8 +46,12 @@ std::string OtherAxis::text() const {
 
 std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profile* profile,
                                   std::uint8_t node) {
-  const bool is_known = profile != nullptr && !profile->is_generic();
-  return is_known ? listed_axes(session, *profile, node) : answering_axes(session, node);
+  if (profile != nullptr && !profile->is_generic()) return listed_axes(session, *profile, node);
+  std::vector<OtherAxis> out;
+  // One that is silent about what it lacks has no axes behind that.
+  for (const auto& axis : session::further_axes(session, node).axes)
+    out.push_back({axis.number, axis.statusword});
+  return out;
 }
 
 std::string axes_text(const std::vector<OtherAxis>& others, bool has_first) {

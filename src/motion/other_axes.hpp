@@ -24,9 +24,7 @@ struct OtherAxis {
 };
 
 /// The further axes of a node, with their states. Where the family's own dictionary is known it decides.
-/// Without it a device that says in 1000h that it follows CiA 402 is asked for 6841h, 7041h …; a number
-/// between them may be missing, as that of an empty slot. Any other is not asked, because some drives raise
-/// an alarm for an object that they do not have. `profile` may be null.
+/// Without it those that session::further_axes() finds. `profile` may be null.
 std::vector<OtherAxis> other_axes(session::Session& session, const drive::Profile* profile,
                                   std::uint8_t node);
 

@@ -103,24 +103,34 @@ Result<bool> is_energised(Session& session, std::uint8_t node) {
 Result<bool> is_any_axis_energised(Session& session, std::uint8_t node) {
   const auto first = is_energised(session, node);
   if (!first || *first) return first;
-  const auto axes = further_axes(session, node);
-  if (!axes) return fail(axes.error());
-  return std::any_of(axes->begin(), axes->end(),
-                     [](const FurtherAxis& axis) { return drive::is_energised(axis.state); });
+  const auto further = further_axes(session, node);
+  const bool any = std::any_of(further.axes.begin(), further.axes.end(), [](const FurtherAxis& axis) {
+    return drive::is_energised(drive::decode_state(axis.statusword));
+  });
+  if (!any && further.failure) return fail(*further.failure);
+  return any;
 }
 
-Result<std::vector<FurtherAxis>> further_axes(Session& session, std::uint8_t node) {
-  std::vector<FurtherAxis> out;
+FurtherAxes further_axes(Session& session, std::uint8_t node) {
+  FurtherAxes out;
   if (session.wary_of(node) != nullptr) return out;
   const auto type = session.upload(node, objects::kDeviceType);
-  if (!type && type.error().code != Errc::sdo_abort) return fail(type.error());
+  if (!type && type.error().code != Errc::sdo_abort) out.failure = type.error();
   if (!type || !drive::is_drive_type(load_le(*type))) return out;
   const auto alarms = session.watch().alarms(node);
-  for (unsigned axis = 2; axis <= drive::kMostAxes && session.watch().alarms(node) == alarms; ++axis) {
-    const auto object = drive::of_axis(objects::kStatusword, axis);
-    const auto word = session.upload(node, object);
-    if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
-    if (word) out.push_back({object, drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))});
+  bool lacks_any = false;
+  for (unsigned number = 2; number <= drive::kMostAxes; ++number) {
+    // An EMCY of another cause leaves no axis unseen.
+    if (lacks_any && session.watch().alarms(node) != alarms) break;
+    const auto word = session.upload(node, drive::of_axis(objects::kStatusword, number));
+    if (word) {
+      out.axes.push_back({number, static_cast<std::uint16_t>(load_le(*word))});
+    } else if (word.error().code == Errc::sdo_abort) {
+      lacks_any = true;
+    } else {
+      out.failure = word.error();
+      break;
+    }
   }
   return out;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -50,14 +51,18 @@ Result<bool> is_any_axis_energised(Session& session, std::uint8_t node);
 
 /// An axis of a node beside its first.
 struct FurtherAxis {
-  ObjectAddress statusword;
-  drive::DriveState state;
+  unsigned number;  ///< 2 to drive::kMostAxes.
+  std::uint16_t statusword;
+};
+struct FurtherAxes {
+  std::vector<FurtherAxis> axes;
+  std::optional<Error> failure;  ///< Why no more were asked for.
 };
 /// The axes 2 to drive::kMostAxes (CiA 402-2: objects 800h higher each) that have a statusword; a number
 /// between them may be missing, as that of an empty slot. None where 1000h does not say that the node is a
-/// drive, nor of a node that takes a request for a missing object for an alarm; after an EMCY no further one
-/// is asked for. Else as Session::upload().
-Result<std::vector<FurtherAxis>> further_axes(Session& session, std::uint8_t node);
+/// drive, nor of a node that takes a request for a missing object for an alarm; where an EMCY follows the
+/// refusal of one, no further one is asked for. The failures are those of Session::upload().
+FurtherAxes further_axes(Session& session, std::uint8_t node);
 
 /// Sends the node the NMT command that puts a new address in force; nothing for a power cycle. What was heard
 /// of it is forgotten: another may answer under its number from now on.

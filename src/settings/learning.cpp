@@ -96,8 +96,9 @@ class Learning {
     if (!first) return fail(first.error());
     if (first->front()) statuswords_.push_back(objects::kStatusword);
     const auto further = session::further_axes(*session_, node_);
-    if (!further) return fail(further.error());
-    for (const auto& axis : *further) statuswords_.push_back(axis.statusword);
+    if (further.failure) return fail(*further.failure);
+    for (const auto& axis : further.axes)
+      statuswords_.push_back(drive::of_axis(objects::kStatusword, axis.number));
     return {};
   }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "../source_dir.hpp"
@@ -116,6 +117,17 @@ TEST_F(NewFamilies, ItsFolderHasTheModeOfNewFolders) {
   ASSERT_TRUE(place) << place.error().message;
   EXPECT_EQ(fs::status(*place).permissions(), fs::perms(0750));
   EXPECT_EQ(std::distance(fs::directory_iterator(root), {}), 1) << "no draft is left";
+}
+
+TEST_F(NewFamilies, ATrialWithoutAFolderForItsDraftIsAnError) {
+  const char* before = std::getenv("TMPDIR");
+  const std::string kept = before == nullptr ? "/tmp" : before;
+  ::setenv("TMPDIR", (root / "none").c_str(), 1);
+  const auto tried = try_family(family, root / "drives", folders);
+  ::setenv("TMPDIR", kept.c_str(), 1);
+  ASSERT_FALSE(tried);
+  EXPECT_EQ(tried.error().code, Errc::file);
+  EXPECT_NE(tried.error().message.find("$TMPDIR"), std::string::npos) << tried.error().message;
 }
 
 TEST_F(NewFamilies, ATrialFailsAsTheWritingWould) {

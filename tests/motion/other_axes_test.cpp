@@ -87,6 +87,20 @@ TEST_F(TwoAxes, ANumberBetweenThemMayBeMissing) {
   EXPECT_EQ(commands, (std::vector<std::string>{"0700", "0000"}));
 }
 
+TEST_F(TwoAxes, AnEmcyOfAnotherCauseLeavesNoneUnseen) {
+  page = "70";
+  word = 0x0237;
+  bench.bus->swallows = [this, third = bench.bus->swallows](const std::string& frame) {
+    if (frame.rfind("601#40416800", 0) != 0) return third(frame);
+    bench.bus->injected.push_back("081#1082010000000000");
+    bench.bus->injected.push_back("581#4B41680050020000");
+    return true;
+  };
+  const auto others = other_axes(*bench.session, &bench.profile(), 1);
+  ASSERT_EQ(others.size(), 2U);
+  EXPECT_EQ(others.back().text(), "axis 3 (0x7041:0) is in operation enabled");
+}
+
 TEST_F(TwoAxes, OneThatDoesNotObeyIsAnError) {
   word = 0x0237;
   obeys = false;
