@@ -38,7 +38,7 @@ def lines(rows):
             out.append(re.sub(f"\\?{RED}?]", "]", text).replace(" ", ""))
             goes_on = row[78][0] != " " or row[79][0] != " "
         else:
-            out.append(re.sub(r"\s+", " ", re.sub(r"\d[\d.]*", "#", plain)) if MEASURED.match(plain) else text)
+            out.append(re.sub(r"\s+", " ", re.sub(r"-?\d[\d.]*", "#", plain)) if MEASURED.match(plain) else text)
     while out and not out[-1]:
         out.pop()
     return out
