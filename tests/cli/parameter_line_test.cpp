@@ -5,6 +5,7 @@
 
 #include "cli/line_runner.hpp"
 #include "cli/terminal/prompt_words.hpp"
+#include "drive/profile.hpp"
 #include "recording_console.hpp"
 #include "tests/source_dir.hpp"
 
@@ -27,8 +28,51 @@ TEST(ParameterLine, StandsForGetAndSet) {
 TEST(ParameterLine, TakesNoOptionForAValueAndNoValueWithoutASign) {
   EXPECT_EQ(as_parameter_line({"Pn0214", "=", "-n", "2"}), (LineWords{"param", "set", "Pn0214=", "-n", "2"}));
   EXPECT_EQ(as_parameter_line({"Pn0214", "45Hz"}), (LineWords{"param", "get", "Pn0214", "45Hz"}));
-  for (const auto* word : {"can0", "jog", "0x6041", "6041", "use", "-n1", "stop", "P", "Pn0214x"})
+  for (const auto* word : {"can0", "jog", "0x6041", "6041", "use", "-n1", "stop", "P", "Pn0214x", "Fn_",
+                           "P3-", "P3-x", "P3.30-", "a-b", "Pn021A", "P.3"})
     EXPECT_EQ(as_parameter_line({word}), LineWords{word});
+}
+
+TEST(ParameterLine, TakesEveryPanelNumberOfEveryFamily) {
+  const std::vector folders{std::filesystem::path(source_dir()) / "eds"};
+  std::size_t count = 0;
+  for (const auto& family : drive::find_families(folders)) {
+    const auto profile = drive::load_profile(family, folders);
+    ASSERT_TRUE(profile) << family.name;
+    if (profile->made_of_dictionary) continue;
+    for (const auto& parameter : profile->parameters) {
+      const auto& id = parameter.id;
+      EXPECT_EQ(as_parameter_line({id}), (LineWords{"param", "get", id})) << family.name;
+      EXPECT_EQ(as_parameter_line({id + "=1"}), (LineWords{"param", "set", id + "=1"})) << family.name;
+      ++count;
+    }
+  }
+  EXPECT_GT(count, 700U);
+}
+
+/// What a line of the prompt answers, of a simulated drive.
+std::string answer_at_prompt(const std::string& bus, const std::string& family, const std::string& line) {
+  Shell::Options options;
+  options.drive_folders = {std::filesystem::path(source_dir()) / "eds"};
+  options.clock = sim::SimBus::Clock::virtual_time;
+  options.defaults.bus = bus;
+  options.defaults.drive = family;
+  options.defaults.nodes = "1";
+  RecordingConsole console;
+  Shell shell(console, options);
+  const auto code = LineRunner(shell).run(line);
+  return std::to_string(code) + " " + console.out_text + console.err_text;
+}
+
+TEST(ParameterLine, ReadsAndSetsNumbersOfGroupsAndHexadecimalOnes) {
+  EXPECT_TRUE(answer_at_prompt("modbus:sim:ts@1", "ts", "Fn_20B").starts_with("0 "));
+  EXPECT_TRUE(answer_at_prompt("modbus:sim:ts@1", "ts", "Fn_20B=1 --dry-run").starts_with("0 "))
+      << answer_at_prompt("modbus:sim:ts@1", "ts", "Fn_20B=1 --dry-run");
+  EXPECT_TRUE(answer_at_prompt("modbus:sim:ts@1", "ts", "fn_20b = 99999").starts_with("2 "));
+  // The manual gives P3-30 no object: the refusal is that of `param get`.
+  const auto refused = answer_at_prompt("coe:sim:sv2@1", "sv2", "P3-30");
+  EXPECT_NE(refused.find("P3-30"), std::string::npos) << refused;
+  EXPECT_EQ(refused, answer_at_prompt("coe:sim:sv2@1", "sv2", "param get P3-30"));
 }
 
 TEST(ParameterLine, IsRefusedLikeTheCommandAndThenWritesNothing) {

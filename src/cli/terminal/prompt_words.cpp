@@ -223,16 +223,20 @@ PromptText dressed_prompt(Shell& shell, const Console& console) {
 
 namespace {
 
-/// `Pn0214`, `Fn_33`, `PA-21`, `P0.03`: one or two letters, then a number.
+/// `Pn0214`, `PA-21`, `P0.03`, `P3-30`, `Fn_20B`: one or two letters, then a number, of groups where there
+/// are several. Behind `_` and `-` it may be hexadecimal.
 bool is_panel_number(std::string_view word) {
   const auto is_letter = [](char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); };
   constexpr std::string_view kDigits = "0123456789";
   std::size_t at = 0;
   while (at < word.size() && at < 2 && is_letter(word[at])) ++at;
   if (at == 0) return false;
-  if (at < word.size() && (word[at] == '_' || word[at] == '-')) ++at;
-  return at < word.size() && kDigits.find(word[at]) != std::string_view::npos &&
-         word.find_first_not_of("0123456789.", at) == std::string_view::npos;
+  if (word.find_first_not_of("0123456789.", at) == std::string_view::npos)
+    return at < word.size() && word[at] != '.';
+  at = word.find_first_not_of("0123456789.", at);
+  if (word[at] != '_' && word[at] != '-') return false;
+  return ++at < word.size() && kDigits.find(word[at]) != std::string_view::npos &&
+         word.find_first_not_of("0123456789.ABCDEFabcdef", at) == std::string_view::npos;
 }
 
 /// A value, not an option: `-5` is one too.
