@@ -5,6 +5,8 @@
 #include "command/command.hpp"
 #include "command/restarted_option.hpp"
 #include "drive/cia402.hpp"
+#include "drive/naming.hpp"
+#include "drive/quantity.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/identify.hpp"
@@ -44,6 +46,15 @@ Value modes_text(const Result<Bytes>& bytes) {
   return out;
 }
 
+/// What the data of the family call a drive with this 1000h; null where they do not say it.
+Value family_kind(const drive::Profile* profile, std::optional<std::uint32_t> type, bool chinese) {
+  if (profile == nullptr || !type) return {};
+  const auto meaning = drive::meaning(drive::target_at(profile, objects::kDeviceType), 0);
+  const auto* label = drive::label_of(meaning, od::Value(std::uint64_t{*type}));
+  if (label == nullptr) return {};
+  return chinese && !label->label_zh.empty() ? label->label_zh : label->label;
+}
+
 void add_state(Record& out, const session::Identity& node, session::Session& session) {
   if (const auto* ring = session.ethercat()) {
     const auto* al = ring->al_of(node.node);
@@ -63,7 +74,10 @@ Record identity_record(const session::Identity& node, std::span<const drive::Fam
       {"node", node.node},
       {"device_type", optional_hex(node.device_type), report::Show::everywhere, "device type"},
       {"device_kind", node.device_type ? Value(drive::device_kind(*node.device_type)) : Value(),
-       report::Show::everywhere, "which is"},
+       report::Show::everywhere, "announced kind"},
+      {"family_kind", family_kind(profile, node.device_type, context.chinese), report::Show::text,
+       "which is"},
+      {"family_kind", family_kind(profile, node.device_type, false), report::Show::json},
       {"device_name", report::text_or_null(node.device_name), report::Show::everywhere, "device name"},
       {"hardware_version", report::text_or_null(node.hardware_version), report::Show::everywhere, "hardware"},
       {"software_version", report::text_or_null(node.software_version), report::Show::everywhere, "software"},

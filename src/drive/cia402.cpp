@@ -141,6 +141,7 @@ std::string device_kind(std::uint32_t device_type) {
   if (profile == 0) return "no device profile";
   if (profile != 402)
     return formatted("{} {}", profile >= 400 && profile < 500 ? "CiA" : "device profile", profile);
+  if (device_type >> 16 == 0xFFFFU) return "CiA 402, several devices";
   constexpr std::string_view kKinds[] = {"frequency converter", "servo drive", "stepper motor"};
   std::string out;
   for (std::size_t i = 0; i < std::size(kKinds); ++i)

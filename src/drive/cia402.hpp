@@ -69,8 +69,9 @@ std::vector<std::string> statusword_bits(std::uint16_t statusword, std::int8_t m
 /// standard does not have.
 std::string_view mode_abbreviation(std::int8_t mode);
 
-/// What 1000h says in words, `CiA 402, servo drive`: the profile in bits 0 to 15, and of CiA 402 the kinds of
-/// drive in bits 16 to 18 (CiA 301, 7.5.2.1; CiA 402-2, object 1000h). In English and of one line.
+/// What 1000h announces in words, `CiA 402, servo drive`: the profile in bits 0 to 15, and of CiA 402 the
+/// kinds of drive in bits 16 to 18, or FFFFh above the profile for a module of several devices (CiA
+/// 301, 7.5.2.1; CiA 402-2, object 1000h). No proof of what the drive is. In English and of one line.
 std::string device_kind(std::uint32_t device_type);
 
 }  // namespace servoctl::drive

@@ -149,6 +149,13 @@ TEST(WordsOfControlAndStatus, TellStateOrCommandAndTheBitsBeside) {
   EXPECT_EQ(controlword_words(0x0002, 1), "quick stop");
 }
 
+TEST(DeviceKind, IsWhatTheDriveAnnounces) {
+  EXPECT_EQ(device_kind(0x00020192), "CiA 402, servo drive");
+  EXPECT_EQ(device_kind(0x00060192), "CiA 402, servo drive and stepper motor");
+  EXPECT_EQ(device_kind(0x00000192), "CiA 402, kind of drive not stated");
+  EXPECT_EQ(device_kind(0xFFFF0192), "CiA 402, several devices");
+}
+
 TEST(StandardMode, IsWhatTheFamilyMeansByTheNumber) {
   MotionRules standard;
   standard.position = 1;
