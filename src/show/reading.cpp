@@ -9,6 +9,7 @@
 #include "canopen/node_id.hpp"
 #include "drive/assumed_unit.hpp"
 #include "drive/standard_objects.hpp"
+#include "drive/word_bits.hpp"
 #include "session/measure.hpp"
 #include "show/records.hpp"
 #include "show/value_words.hpp"
@@ -164,6 +165,18 @@ od::DataType type_of(const Reading& reading, ByteSpan bytes) {
   return printable ? od::DataType::string : od::DataType::bytes;
 }
 
+namespace {
+
+/// CiA 402 gives the objects of a further axis the meaning of those of the first, 800h lower, which the data
+/// list; which input is which switch, they do not say of it.
+bool is_of_further_axis(const Reading& reading) {
+  const auto& object = reading.target.address;
+  const auto first = drive::of_first_axis(object);
+  return first != object && reading.family != nullptr && reading.family->dictionary.find(first) != nullptr;
+}
+
+}  // namespace
+
 DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
   DecodedValue out;
   auto meaning = drive::as_answered(drive::meaning(reading.target, reading.node), bytes.size());
@@ -197,9 +210,10 @@ DecodedValue decode_value(const Reading& reading, ByteSpan bytes) {
     out.label = label->label;
     out.label_zh = report::text_or_null(label->label_zh);
   } else if (const auto* word = std::get_if<std::uint64_t>(&*value);
-             word != nullptr && reading.target.entry != nullptr) {
-    out.label = report::text_or_null(value_words(reading.target.address, *word, false, reading.family));
-    if (!out.label.is_null()) out.word = WordOfObject{reading.target.address, *word, reading.family};
+             word != nullptr && (reading.target.entry != nullptr || is_of_further_axis(reading))) {
+    const auto* family = reading.target.entry != nullptr ? reading.family : nullptr;
+    out.label = report::text_or_null(value_words(reading.target.address, *word, false, family));
+    if (!out.label.is_null()) out.word = WordOfObject{reading.target.address, *word, family};
   }
   return out;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "drive/standard_objects.hpp"
+#include "show/reading.hpp"
 #include "tests/source_dir.hpp"
 
 namespace servoctl::show {
@@ -34,6 +35,23 @@ TEST(ValueWords, ASecondAxisReadsLikeTheFirst) {
             value_words(objects::kStatusword, 0x0637, false, nullptr));
   EXPECT_EQ(value_words({0x6840, 0}, 0x000F, false, nullptr), "enable operation");
   EXPECT_EQ(value_words({0x6D02, 0}, 0x0041, false, nullptr), "pp, ip");
+}
+
+TEST(ValueWords, ASecondAxisHasThemWhereTheDataListTheFirstAlone) {
+  const auto label = [](const drive::Profile& of, ObjectAddress object, const Bytes& bytes) {
+    Reading reading;
+    reading.target = drive::target_at(&of, object);
+    reading.family = &of;
+    EXPECT_EQ(reading.target.entry, nullptr);
+    return label_text(decode_value(reading, bytes), false);
+  };
+  const auto gsd600 = family("gsd600");
+  EXPECT_EQ(label(gsd600, {0x6841, 0}, {0x37, 0x06}),
+            value_words(objects::kStatusword, 0x0637, false, &gsd600));
+  EXPECT_EQ(label(gsd600, {0x6840, 0}, {0x0F, 0}), "enable operation");
+  EXPECT_EQ(label(gsd600, {0x6D02, 0}, {0x41, 0, 0, 0}), "pp, ip");
+  EXPECT_EQ(label(gsd600, {0x68FD, 0}, {4, 0, 0x3F, 0}), "") << "its inputs are of the first axis";
+  EXPECT_EQ(label(family("dm"), {0x6D02, 0}, {0x41, 0, 0, 0}), "") << "it has no 6502h itself";
 }
 
 TEST(ValueWords, AnErrorRegisterOfZeroSaysSo) {
