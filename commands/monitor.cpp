@@ -257,7 +257,8 @@ const Command kMonitor{
     .run = run_monitor,
     .goes_on = true,
     .elsewhere =
-        "`--trace FILE.pcap` writes every frame for Wireshark; what slaves tell is shown by every command",
+        "`status -n all --trace FILE.pcap` writes every frame for Wireshark, as each command with --trace does; what "
+        "slaves tell is shown by every command",
 };
 
 }  // namespace servoctl::commands

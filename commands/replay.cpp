@@ -240,7 +240,7 @@ Result<void> check_plan(const traffic::ReplayPlan& plan, std::string_view file) 
   if (plan.seen == 0) return traffic::no_frames(file, plan.strays);
   if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())
     return fail(Errc::usage, formatted("{} has no timestamps: its frames cannot be timed", file),
-                "`candump -L` and `candump -ta` write them, `--trace FILE` too");
+                "`candump -L` and `candump -ta` write them, `monitor --trace FILE` too");
   if (plan.frames.empty())
     return fail(Errc::negative, formatted("no frame of the {} in {} is sent", plan.seen, file),
                 "--only and --master leave them out");

@@ -121,7 +121,7 @@ Result<std::unique_ptr<Bus>> open_replay(std::string_view place) {
                 "say it behind the file: `?columns=time,id:hex,data:hex`");
   if (lines.empty())
     return fail(Errc::file, formatted("{} contains no frames", file),
-                "recordings are what `decode` reads; `--trace FILE` writes them");
+                "recordings are what `decode` reads; `monitor --trace FILE` writes one");
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   return std::make_unique<ReplayBus>(std::move(lines), file);
 }

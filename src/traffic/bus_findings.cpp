@@ -23,11 +23,18 @@ constexpr std::uint16_t kWarning = 96;
 
 double in_seconds(Duration time) { return std::chrono::duration<double>(time).count(); }
 
-/// How the bitrate is found, and taken; only an interface of the kernel has commands for it.
-std::string find_bitrate(const LinkFacts* facts) {
-  if (facts == nullptr)
-    return "find the bitrate: `bus detect slcan:PORT`, or `bus detect` on the machine that has the interface";
+/// How the bitrate is found, and taken: an adapter behind slcan: takes it with its URL.
+std::string find_bitrate(const LinkFacts* facts, std::string_view url) {
+  if (facts == nullptr) return bitrate_search(url);
   return formatted("`bus detect {0}`, and `bus up {0} --bitrate …`", facts->name);
+}
+
+std::string ask_the_silent(const LinkFacts* facts) {
+  if (facts == nullptr) return "`doctor --active` asks them";
+  if (facts->state.listen_only)
+    return formatted("`bus up {0}` ends the listen-only mode, then `doctor {0} --active` asks them",
+                     facts->name);
+  return formatted("`doctor {} --active` asks them", facts->name);
 }
 
 bool sends_in_vain(const BusPicture& picture, const LinkFacts* facts) {
@@ -49,7 +56,8 @@ bool is_passive_receiver(const LinkFacts* facts) {
   return facts != nullptr && facts->state.rx_errors.value_or(0) >= kWarning;
 }
 
-void add_alone(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
+void add_alone(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts,
+               std::string_view url) {
   out.push_back(
       {Level::fault, "nobody-acknowledges",
        picture.unacknowledged() > 0
@@ -59,10 +67,11 @@ void add_alone(std::vector<Finding>& out, const BusPicture& picture, const LinkF
        "it is alone on the bus: the drives have no power, the plug or the cable is open, or they have another bitrate",
        formatted(
            "check power and plug, and measure 60 ohm between CAN_H and CAN_L with the power off; then {}",
-           find_bitrate(facts))});
+           find_bitrate(facts, url))});
 }
 
-void add_wrong_bitrate(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
+void add_wrong_bitrate(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts,
+                       std::string_view url) {
   const auto count = picture.damage() + counted_errors(facts);
   auto text = picture.damage() > 0 ? picture.damage_text() : formatted("{} errors", count);
   if (count == 0) text = formatted("error counter rx {}", facts->state.rx_errors.value_or(0));
@@ -75,9 +84,8 @@ void add_wrong_bitrate(std::vector<Finding>& out, const BusPicture& picture, con
           : std::string(
                 "somebody talks, and nothing of it can be read: another bitrate; seldom CAN_H and CAN_L "
                 "crossed, or no terminator at all");
-  out.push_back(
-      {Level::fault, "wrong-bitrate", formatted("errors and not one frame: {}", text), means,
-       facts != nullptr ? formatted("`bus detect {}` finds the bitrate", facts->name) : find_bitrate(facts)});
+  out.push_back({Level::fault, "wrong-bitrate", formatted("errors and not one frame: {}", text), means,
+                 bitrate_search(facts != nullptr ? std::string_view(facts->name) : url)});
 }
 
 void add_damage(std::vector<Finding>& out, const BusPicture& picture, const LinkFacts* facts) {
@@ -149,8 +157,7 @@ void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkF
   if (picture.frames() == 0) {
     out.push_back({Level::note, "silence", formatted("nothing was heard in {} s", plain_number(time, 3)),
                    "drives without heartbeat and PDOs are silent until they are asked",
-                   facts == nullptr ? std::string("`doctor --active` asks them")
-                                    : formatted("`doctor {} --active` asks them", facts->name)});
+                   ask_the_silent(facts)});
     return;
   }
   auto text = formatted("{} frames in {} s", picture.frames(), plain_number(time, 3));
@@ -161,7 +168,7 @@ void add_heard(std::vector<Finding>& out, const BusPicture& picture, const LinkF
     out.push_back(
         {Level::note, "foreign-frames", formatted("{} frames have 29-bit identifiers", picture.extended()),
          "of CANopen only PDOs can have them: PDOs that were set so, or another protocol on this bus",
-         "`pdo show` shows the CAN-IDs that a drive has for its PDOs, `monitor` the frames; where another device "
+         "`pdo show -n NODE` shows the CAN-IDs that a drive has for its PDOs, `monitor` the frames; where another device "
          "is to be on this bus, the load is all that it costs"});
 }
 
@@ -176,14 +183,14 @@ void add_fd_frames(std::vector<Finding>& findings, std::string text) {
        "on this bus destroys such frames"});
 }
 
-std::vector<Finding> bus_findings(const BusPicture& picture, const LinkFacts* facts) {
+std::vector<Finding> bus_findings(const BusPicture& picture, const LinkFacts* facts, std::string_view url) {
   std::vector<Finding> out;
   const bool alone = sends_in_vain(picture, facts);
   const bool damaged = picture.damage() > 0 || counted_errors(facts) > 0 || is_passive_receiver(facts);
   if (alone)
-    add_alone(out, picture, facts);
+    add_alone(out, picture, facts, url);
   else if (damaged && picture.frames() == 0)
-    add_wrong_bitrate(out, picture, facts);
+    add_wrong_bitrate(out, picture, facts, url);
   else if (picture.damage() > 0 || counted_errors(facts) > 0)
     add_damage(out, picture, facts);
   if (!alone && (!damaged || picture.frames() > 0)) add_heard(out, picture, facts);

@@ -65,6 +65,14 @@ Result<void> hear_rest(can::Bus& bus, BusPicture& picture) {
   return {};
 }
 
+/// `sim:` and `local:` have no bitrate that could be another.
+std::string look_for_all(const std::string& url) {
+  if (url.starts_with("sim:") || url.starts_with("local:"))
+    return "`nmt preop -n all` if they may be stopped; else check power and cable";
+  return formatted("`nmt preop -n all` if they may be stopped; else check power and cable; {}",
+                   bitrate_search(url));
+}
+
 /// Asks all nodes for 1000h; who answers, and who answers twice.
 Result<std::vector<Finding>> ask_all(session::Session& session) {
   const auto found = session::nodes_present(session);
@@ -73,10 +81,9 @@ Result<std::vector<Finding>> ask_all(session::Session& session) {
     return std::vector<Finding>{{Level::fault, "cannot-send", found.error().message,
                                  "the question did not get through", found.error().hint}};
   if (!found)
-    return std::vector<Finding>{
-        {Level::fault, "no-node", "no node answered a read of 1000h",
-         "no power, no cable, another bitrate, or all of them are stopped (NMT)",
-         "`nmt preop -n all` if they may be stopped; else check power and cable, and `bus detect` for the bitrate"}};
+    return std::vector<Finding>{{Level::fault, "no-node", "no node answered a read of 1000h",
+                                 "no power, no cable, another bitrate, or all of them are stopped (NMT)",
+                                 look_for_all(session.url())}};
   std::string list;
   for (const auto node : *found) append(list, formatted("{}", node));
   std::vector<Finding> out{{Level::ok, "nodes", formatted("answered: node {}", list), {}, {}}};
@@ -91,7 +98,7 @@ Result<std::vector<Finding>> ask_all(session::Session& session) {
 /// Silence is no more to be mended by asking where they were asked.
 void drop_advice(std::vector<Finding>& findings) {
   for (auto& finding : findings)
-    if (finding.code == "silence") finding.mend = "they were asked: what they answered is told below";
+    if (finding.code == "silence") finding.mend = "they were polled; the answers are below";
 }
 
 Result<std::vector<Finding>> ask_over(const std::string& name, const DoctorOptions& options) {
@@ -212,7 +219,7 @@ Result<Findings> examine(session::Session& session, const DoctorOptions& options
   if (auto* const can = session.can())
     if (auto about = can->bus().about(); !about.empty())
       out.list.push_back({Level::ok, "adapter", std::move(about), {}, {}});
-  add(out.list, bus_findings(picture, nullptr));
+  add(out.list, bus_findings(picture, nullptr, session.url()));
   if (!options.active) return out;
   auto asked = ask_all(session);
   if (!asked) return fail(asked.error());

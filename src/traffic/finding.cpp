@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/format.hpp"
+#include "session/own_bitrate.hpp"
 
 namespace servoctl::traffic {
 
@@ -14,9 +15,15 @@ Finding two_nodes(std::uint8_t node, std::string_view noticed) {
       Finding::Level::fault, "duplicate-node", formatted("two nodes have the number {}: {}", node, noticed),
       "both obey what is meant for one",
       formatted(
-          "switch all but one of them off and give it another number: `address NEW -n {}`; drives with LSS "
+          "switch all but one of them off and give it another number: `address NEW -n {} -d FAMILY`; drives with LSS "
           "take one by their serial numbers while both are on: `help lss set-node`",
           node)};
+}
+
+std::string bitrate_search(std::string_view url) {
+  if (!url.empty() && session::check_own_bitrate(url, "bus detect"))
+    return formatted("`bus detect {}` finds the bitrate", url);
+  return "`bus detect INTERFACE` on the machine that has the interface finds the bitrate";
 }
 
 std::string_view name(Finding::Level level) {

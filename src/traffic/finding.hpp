@@ -23,6 +23,9 @@ struct Finding {
 /// `duplicate-node`, a fault. `noticed`: what showed it, as session::Duplicates words it.
 Finding two_nodes(std::uint8_t node, std::string_view noticed);
 
+/// How the bitrate of this bus is found, with the command.
+std::string bitrate_search(std::string_view url);
+
 std::string_view name(Finding::Level level);  ///< `ok note fault`
 
 /// The findings of one bus or interface.

@@ -25,8 +25,9 @@ struct LinkFacts {
 std::vector<Finding> link_findings(const LinkFacts& facts);
 
 /// Of the bus: who talks, and what goes wrong on the wire. `facts` is null where there is no controller, as
-/// on `local:` and `sim:`.
-std::vector<Finding> bus_findings(const BusPicture& picture, const LinkFacts* facts);
+/// on `local:` and `sim:`; the bus then has this URL.
+std::vector<Finding> bus_findings(const BusPicture& picture, const LinkFacts* facts,
+                                  std::string_view url = {});
 
 /// Adds that CAN FD frames came, in these words: such a bus is not silent.
 void add_fd_frames(std::vector<Finding>& findings, std::string text);

@@ -125,7 +125,7 @@ tl::unexpected<Error> no_frames(std::string_view path, const Strays& strays) {
         ".blf, pcap and many tools need none");
   return fail(
       Errc::file, formatted("{} contains no CAN frames", path),
-      "a recording is a candump file (`--trace FILE` writes `candump -L`), .asc, .trc, .blf, or a pcap or "
+      "a recording is a candump file (`monitor --trace FILE` writes one), .asc, .trc, .blf, or a pcap or "
       "pcapng of a CAN interface");
 }
 

@@ -70,8 +70,10 @@ void add_count_of_slaves(std::vector<Finding>& out, const RingFacts& facts) {
                  formatted("between {} and {} slaves answered", facts.least, facts.most),
                  formatted("node {} and those behind it come and go: a loose plug, or a drive that restarts",
                            facts.least + 1),
-                 formatted("check power of node {} and the cable between node {} and node {}",
-                           facts.least + 1, facts.least, facts.least + 1)});
+                 facts.least == 0
+                     ? std::string("check power of node 1 and the cable between this machine and node 1")
+                     : formatted("check power of node {} and the cable between node {} and node {}",
+                                 facts.least + 1, facts.least, facts.least + 1)});
 }
 
 void add_frames(std::vector<Finding>& out, const RingFacts& facts) {

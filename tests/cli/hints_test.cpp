@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-/// A hint, and the line that was given it.
+/// A hint, or what mends a finding, and the line that was given it.
 struct Hint {
   std::string name;  ///< Of the golden case.
   std::string line;
@@ -40,8 +40,11 @@ std::vector<Hint> all_hints() {
     for (std::string text; std::getline(file, text);) {
       if (text.starts_with("=== ")) name = text.substr(4);
       if (text.starts_with("$ ")) line = text.substr(2);
-      if (text.starts_with("  hint: ") && !line.ends_with(" --json"))
-        out.push_back({name, line, text.substr(8)});
+      if (line.ends_with(" --json")) continue;
+      // What `doctor` says that mends a finding is a hint too.
+      for (const std::string_view mark : {"  hint: ", "  mend: "})
+        if (const auto at = text.find(mark); at == text.find_first_not_of(' ') - 2)
+          out.push_back({name, line, text.substr(at + mark.size())});
     }
   }
   return out;
@@ -76,7 +79,6 @@ std::string filled_in(std::string text) {
 const std::set<std::string> kNoCommands{"candump -L",
                                         "all",
                                         "end",
-                                        "--trace FILE",
                                         "use 1",
                                         "use 1,3,5-8",
                                         "use all",

@@ -116,8 +116,15 @@ TEST(BusFindings, SayWhatIsToBeDoneForTheInterfaceThatThereIs) {
   const auto found = bus_findings(picture({}), &deaf);
   EXPECT_EQ(found.front().text, "errors and not one frame: error counter rx 130");
   EXPECT_NE(found.front().means.find("another bitrate than 500 kbit/s"), std::string::npos);
-  EXPECT_NE(bus_findings(picture(times(9, kStuff)), nullptr).front().mend.find("bus detect slcan:PORT"),
-            std::string::npos);
+  const auto damaged = picture(times(9, kStuff));
+  EXPECT_EQ(bus_findings(damaged, nullptr, "slcan:/dev/ttyACM0@500k").front().mend,
+            "`bus detect slcan:/dev/ttyACM0@500k` finds the bitrate");
+  EXPECT_EQ(bus_findings(damaged, nullptr, "socketcand://plant:29536/can0").front().mend,
+            "`bus detect INTERFACE` on the machine that has the interface finds the bitrate");
+  auto only_listens = facts();
+  only_listens.state.listen_only = true;
+  EXPECT_EQ(bus_findings(picture({}), &only_listens).front().mend,
+            "`bus up can0` ends the listen-only mode, then `doctor can0 --active` asks them");
 }
 
 TEST(BusFindings, TakeErrorsWithoutAFrameForAnotherBitrate) {
@@ -207,7 +214,9 @@ TEST(BusFindings, TellOfTwoNodesWithOneNumber) {
   const auto known = facts();
   can::Frame boot = heartbeat(5);
   boot.data[0] = 0;
-  EXPECT_EQ(codes(bus_findings(picture({boot, boot}), &known)), Codes{"duplicate-node"});
+  const auto found = bus_findings(picture({boot, boot}), &known);
+  EXPECT_EQ(codes(found), Codes{"duplicate-node"});
+  EXPECT_NE(finding(found, "duplicate-node")->mend.find("`address NEW -n 5 -d FAMILY`"), std::string::npos);
 }
 
 TEST(BusFindings, TellOfFramesThatAreNotOfCanOpen) {

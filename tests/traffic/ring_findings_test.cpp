@@ -50,6 +50,9 @@ TEST(RingFindings, TellOfSlavesThatComeAndGoAndOfLostFrames) {
   EXPECT_EQ(codes_of_ring(found), (Codes{"fault slaves-come-and-go", "fault lost-frames"}));
   EXPECT_NE(found[0].mend.find("the cable between node 1 and node 2"), std::string::npos);
   EXPECT_EQ(found[1].text, "3 of 100 frames did not come back, 0 came back damaged");
+  facts.least = 0;
+  EXPECT_EQ(ring_findings(facts)[0].mend,
+            "check power of node 1 and the cable between this machine and node 1");
 }
 
 TEST(RingFindings, TellOfAPortThatIsClosed) {
