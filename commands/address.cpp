@@ -54,7 +54,7 @@ Result<settings::AddressWish> address_wish(const Arguments& arguments) {
     const auto number = parse_integer(arguments.text("new"));
     const auto node = number ? number->as_unsigned() : std::nullopt;
     if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-      return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("new")),
+      return fail(Errc::usage, message("'{}' is not a node-ID", as_it_is(arguments.text("new"))),
                   "node-IDs are 1 to 127");
     out.node = static_cast<std::uint8_t>(*node);
   }
@@ -150,9 +150,9 @@ void tell_axes(Context& context, const AddressChange& change, const AddressOutco
 void tell_power(Context& context, const AddressChange& change, const AddressOutcome& outcome) {
   if (outcome.end != AddressEnd::awaits_restart || outcome.error || change.bitrate) return;
   context.notices.push_back(
-      formatted("node {}: switch it off and on; then it is node {} (`--wait 5min` waits for it, `info -n {}` "
-                "shows it)",
-                change.node, change.to, change.to));
+      message("node {}: switch it off and on; then it is node {} (`--wait 5min` waits for it, `info -n {}` "
+              "shows it)",
+              node_name(change.node), change.to, change.to));
 }
 
 /// How the interface follows its drives to another bitrate, where one is wished.
@@ -180,8 +180,8 @@ Result<Value> change_addresses(Context& context, std::span<const AddressChange> 
     settings::follow_bitrate(context, follower, changes, outcomes, options);
   else if (follower.follows())
     context.notices.push_back(
-        formatted("{} stays at its bitrate, and nothing is restarted: not every drive was written",
-                  follower.link->name()));
+        message("{} stays at its bitrate, and nothing is restarted: not every drive was written",
+                follower.link->name()));
   bool awaits_bitrate = false;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     if (outcomes[i].error) context.errors.push_back(*outcomes[i].error);

@@ -39,8 +39,9 @@ Result<session::SettingFilter> filter_of(const Context& context, std::string_vie
   auto selection = settings::selection_of(*context.profile, word);
   if (!selection) {
     auto error = selection.error();
-    if (const auto place = error.hint.find("params,"); place != std::string::npos)
-      error.hint.insert(place, "changed, ");
+    auto hint = error.hint.text();
+    if (const auto place = hint.find("params,"); place != std::string::npos)
+      error.hint = hint.insert(place, "changed, ");
     return fail(std::move(error));
   }
   return session::SettingFilter{
@@ -78,7 +79,7 @@ void keep_changed(const drive::Profile& profile, settings::Backup& backup, setti
 Result<void> make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
-  if (error) return fail(Errc::file, formatted("{}: {}", folder.string(), error.message()));
+  if (error) return fail(Errc::file, message("{}: {}", as_it_is(folder.string()), error.message()));
   return {};
 }
 
@@ -87,9 +88,9 @@ void tell_format(Context& context, const std::filesystem::path& file, const Argu
                  settings::BackupFormat format) {
   const auto ending = lower(file.extension().string());
   if (arguments.has("--format") || settings::extension_of(format) == ending) return;
-  context.notices.push_back(formatted(
+  context.notices.push_back(message(
       "{} is written as {}: it ends in none of .json, .dcf, .csv and .servoctl, and there is no --format",
-      file.string(), settings::kBackupFormats[static_cast<std::size_t>(format)]));
+      as_it_is(file.string()), settings::kBackupFormats[static_cast<std::size_t>(format)]));
 }
 
 struct Saved {
@@ -106,10 +107,10 @@ void tell_lines(Context& context, const std::filesystem::path& file, std::uint8_
       std::count_if(read->entries.begin(), read->entries.end(),
                     [](const settings::Backup::Entry& entry) { return entry.bytes.has_value(); }));
   if (lines == values) return;
-  context.notices.push_back(formatted(
+  context.notices.push_back(message(
       "{} has lines for {} of {} values: node-ID, bitrate, what is outside of its limits and what may be "
       "read-only are comments, entries of PDOs that are not in use have none; JSON keeps all",
-      file.string(), lines, values));
+      as_it_is(file.string()), lines, values));
 }
 
 Result<Saved> save(Context& context, settings::Backup backup, bool changed, settings::BackupFormat format,

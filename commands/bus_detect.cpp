@@ -116,16 +116,16 @@ Error no_bitrate_found(const Listener& listener, const session::Search& search) 
   if (noise)
     return make_error(
         Errc::negative,
-        formatted("no bitrate was found on {}: errors were heard, and no frame at any bitrate", name),
+        message("no bitrate was found on {}: errors were heard, and no frame at any bitrate", as_it_is(name)),
         "somebody talks: check CAN_H and CAN_L for being crossed, the 120 ohm at both ends, and that "
         "all nodes have one bitrate; another one than the usual ones: --bitrate 83333");
   return make_error(
-      Errc::negative, formatted("no bitrate was found on {}: nobody talks", name),
-      formatted(
+      Errc::negative, message("no bitrate was found on {}: nobody talks", as_it_is(name)),
+      message(
           "drives that send nothing by themselves cannot be heard: switch one off and on while this runs (its "
           "boot-up is a frame), listen longer (--for 10s), or ask at each bitrate with `scan --all-bitrates "
           "--bus {}`; then check power, cable and plug",
-          listener.bus_at(500'000)));
+          as_it_is(listener.bus_at(500'000))));
 }
 
 /// Where it stands if the process is killed in between.
@@ -167,12 +167,12 @@ void tell_next(Context& context, const Listener& listener, const can::LinkState&
                std::uint32_t bitrate) {
   const auto& name = listener.name();
   if (listener.serial)
-    context.notices.push_back(
-        formatted("{} is closed again; `-b {}` takes part in the bus", name, listener.bus_at(bitrate)));
+    context.notices.push_back(message("{} is closed again; `-b {}` takes part in the bus", as_it_is(name),
+                                      as_it_is(listener.bus_at(bitrate))));
   else if (!before.up || before.bitrate != bitrate)
     context.notices.push_back(
-        formatted("{} was put back to what it was; `bus up {} --bitrate {}` takes part in the bus", name,
-                  name, bitrate));
+        message("{} was put back to what it was; `bus up {} --bitrate {}` takes part in the bus",
+                as_it_is(name), as_it_is(name), bitrate));
 }
 
 Result<Value> run_bus_detect(Context& context, const Arguments& arguments) {

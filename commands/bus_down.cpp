@@ -28,7 +28,7 @@ Result<Value> run_bus_down(Context& context, const Arguments& arguments) {
     return Value(std::move(table));
   }
   if (!before->up) {
-    context.notices.push_back(formatted("{} is down already; nothing was changed", *name));
+    context.notices.push_back(message("{} is down already; nothing was changed", as_it_is(*name)));
     return Value(show::link_record(*name, *before));
   }
   if (const auto held = hold_energised(context, *name); !held) return fail(held.error());

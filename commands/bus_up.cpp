@@ -33,7 +33,8 @@ Result<std::optional<std::uint16_t>> sample_point_of(const Arguments& arguments)
   const auto number = parse_real(trim(text));
   const double thousandths = number ? *number * (per_cent ? 10 : 1000) : 0;
   if (!number || !(thousandths >= 500 && thousandths < 1000))
-    return fail(Errc::usage, formatted("'{}' is not a sample point", arguments.text("--sample-point")),
+    return fail(Errc::usage,
+                message("'{}' is not a sample point", as_it_is(arguments.text("--sample-point"))),
                 "write 0.8 or 80%; CiA 301 recommends 0.875");
   return std::optional(static_cast<std::uint16_t>(std::floor(thousandths + 0.5)));
 }
@@ -84,7 +85,8 @@ Result<Value> run_bus_up(Context& context, const Arguments& arguments) {
   if (!plan) return fail(plan.error());
   if (context.dry_run) return planned_bus_up(*name, *plan);
   if (plan->steps.empty()) {
-    context.notices.push_back(formatted("{} is up with these settings already; nothing was changed", *name));
+    context.notices.push_back(
+        message("{} is up with these settings already; nothing was changed", as_it_is(*name)));
     return Value(show::link_record(*name, *before));
   }
   if (plan->stops_bus) {
@@ -95,7 +97,8 @@ Result<Value> run_bus_up(Context& context, const Arguments& arguments) {
   if (const auto done = session::set_up(**link, *before, *plan); !done) return fail(done.error());
   const auto after = (*link)->state();
   if (!after) return fail(after.error());
-  for (const auto& phrase : session::rounded(*after, *wish)) context.notices.push_back(*name + ": " + phrase);
+  for (const auto& phrase : session::rounded(*after, *wish))
+    context.notices.push_back(message("{}: {}", as_it_is(*name), phrase));
   return Value(show::link_record(*name, *after));
 }
 

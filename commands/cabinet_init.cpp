@@ -40,7 +40,7 @@ Result<Families> families_of(const Arguments& arguments) {
     const auto nodes = canopen::parse_node_ids(trim(part.substr(0, equals)), "--family 1=gsd600,2-4=da200");
     if (!nodes) return fail(nodes.error());
     if (equals == std::string_view::npos || trim(part.substr(equals + 1)).empty())
-      return fail(Errc::usage, formatted("--family: '{}' names no family", part),
+      return fail(Errc::usage, message("--family: '{}' names no family", as_it_is(part)),
                   "--family 1=gsd600,2-4=da200");
     for (const auto node : *nodes) out[node] = std::string(trim(part.substr(equals + 1)));
   }
@@ -77,13 +77,16 @@ class Init {
     std::error_code ignored;
     if (!fs::exists(file_, ignored)) return std::string();
     if (context_->read_only)
-      return fail(Errc::refused, formatted("{} exists, and --read-only replaces no file", file_.string()),
+      return fail(Errc::refused,
+                  message("{} exists, and --read-only replaces no file", as_it_is(file_.string())),
                   "name a file that does not exist yet");
     const auto present = cabinet::read_cabinet(file_);
     if (!present) return fail(present.error());
     for (const auto& bus : present->buses)
       if (bus.name == bus_ || bus.url == context_->front_end->bus_url())
-        return fail(Errc::refused, formatted("{} has bus {} ({}) already", file_.string(), bus.name, bus.url),
+        return fail(Errc::refused,
+                    message("{} has bus {} ({}) already", as_it_is(file_.string()), as_it_is(bus.name),
+                            as_it_is(bus.url)),
                     "name another file, or another bus with --bus and --name");
     names_ = present->names();
     auto text = read_file(file_);
@@ -110,7 +113,8 @@ class Init {
     for (auto& axis : out) read(axis);
     for (const auto& [node, family] : families_)
       if (std::none_of(out.begin(), out.end(), [n = node](const auto& axis) { return axis.node == n; }))
-        context_->notices.push_back(formatted("--family {}={}: no drive answered there", node, family));
+        context_->notices.push_back(
+            message("--family {}={}: no drive answered there", node, as_it_is(family)));
     return out;
   }
 
@@ -148,10 +152,10 @@ class Init {
     axis.heartbeat_ms = settings->heartbeat_ms;
     axis.increments = settings->increments;
     if (settings->unstated > 0)
-      context_->notices.push_back(formatted(
+      context_->notices.push_back(message(
           "node {}: {} settings are not compared with the factory's, which the data of {} do not state: "
           "`backup` saves them all",
-          axis.node, settings->unstated, axis.family));
+          node_name(axis.node), settings->unstated, as_it_is(axis.family)));
     if (settings->pdos.empty()) return;
     axis.pdo_file = axis.name + ".pdos.toml";
     pdos_.emplace_back(file_.parent_path() / axis.pdo_file, std::move(settings->pdos));
@@ -163,7 +167,7 @@ class Init {
     std::error_code ignored;
     for (const auto& [path, content] : pdos_) {
       if (fs::exists(path, ignored))
-        return fail(Errc::refused, formatted("{} is there already", path.string()),
+        return fail(Errc::refused, message("{} is there already", as_it_is(path.string())),
                     "move it away; nothing was written");
     }
     for (const auto& [path, content] : pdos_)
@@ -179,10 +183,11 @@ class Init {
                             axis.parameters.size(), report::text_or_null(axis.pdo_file)});
       if (axis.guessed)
         context_->notices.push_back(
-            formatted("node {}: its identity fits {} (a guess, not proof); hold it against the nameplate",
-                      axis.node, axis.family));
+            message("node {}: its identity fits {} (a guess, not proof); hold it against the nameplate",
+                    node_name(axis.node), as_it_is(axis.family)));
       if (axis.family.empty())
-        context_->notices.push_back(formatted("node {}: no family fits; it stands in comments", axis.node));
+        context_->notices.push_back(
+            message("node {}: no family fits; it stands in comments", node_name(axis.node)));
     }
     report::Record out{{"file", file_.string()}, {"bus", bus_}, {"axes", std::move(table)}};
     if (!context_->dry_run)
@@ -204,7 +209,7 @@ Result<Value> run_cabinet_init(Context& context, const Arguments& arguments) {
   if (!families) return fail(families.error());
   const auto name = arguments.has("--name") ? std::string(arguments.text("--name")) : std::string("main");
   if (!cabinet::is_name(name))
-    return fail(Errc::usage, formatted("'{}' cannot be the name of a bus", name),
+    return fail(Errc::usage, message("'{}' cannot be the name of a bus", as_it_is(name)),
                 "a letter first, then letters, digits, `_` and `-`; `all` is no name");
   const auto file = arguments.has("file") ? fs::path(arguments.text("file")) : fs::path("cabinet.toml");
   return Init(context, file, name, std::move(*families)).run();

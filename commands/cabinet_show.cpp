@@ -109,13 +109,13 @@ class Differences {
     for (const auto& name : look.plan->owed) names.emplace_back(name);
     waiting_[look.axis] = std::move(names);
     for (const auto& notice : look.notices)
-      if (auto text = cabinet::of_axis(*look.axis, notice); told_.insert(text).second)
+      if (auto text = cabinet::of_axis(*look.axis, notice); told_.insert(text.text()).second)
         context_->notices.push_back(std::move(text));
   }
 
   /// Why an axis is not held against the file: it may be another drive.
   void tell(const cabinet::Axis& axis, const Error& error) {
-    auto text = formatted("axis {}: {}", axis.name, error.message);
+    auto text = formatted("axis {}: {}", axis.name, error.message.text());
     if (told_.insert(text).second) context_->notices.push_back(std::move(text));
   }
 

@@ -32,7 +32,7 @@ Result<cabinet::SwapOptions> swap_options(const Arguments& arguments) {
     const auto number = parse_integer(arguments.text("--from"));
     const auto node = number ? number->as_unsigned() : std::nullopt;
     if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-      return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("--from")),
+      return fail(Errc::usage, message("'{}' is not a node-ID", as_it_is(arguments.text("--from"))),
                   "node-IDs are 1 to 127");
     out.from = static_cast<std::uint8_t>(*node);
   }
@@ -55,7 +55,7 @@ Result<report::Value> run_cabinet_swap(Context& context, const Arguments& argume
   const auto axes = (*cabinet)->select(arguments.text("axis"));
   if (!axes) return fail(axes.error());
   if (axes->size() != 1)
-    return fail(Errc::usage, formatted("{} names {} axes", arguments.text("axis"), axes->size()),
+    return fail(Errc::usage, message("{} names {} axes", as_it_is(arguments.text("axis")), axes->size()),
                 "one drive is replaced at a time");
   const auto families = drive::find_families(context.drive_folders);
   options->apply.choice.families = families;

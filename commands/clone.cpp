@@ -34,7 +34,7 @@ Result<Value> run_clone(Context& context, const Arguments& arguments) {
   if (!to) return fail(to.error());
   if (from->size() != 1) return fail(Errc::usage, "--from takes one node");
   if (std::find(to->begin(), to->end(), from->front()) != to->end())
-    return fail(Errc::usage, formatted("node {} cannot be cloned into itself", from->front()));
+    return fail(Errc::usage, message("node {} cannot be cloned into itself", node_name(from->front())));
   std::vector<std::uint8_t> all = *to;
   all.push_back(from->front());
   if (const auto right = context.hold_family(all, context.profile, true); !right) return fail(right.error());

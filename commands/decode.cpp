@@ -66,10 +66,11 @@ Result<void> take_cabinet(Context& context, const Arguments& arguments) {
     if (!profile) return fail(profile.error());
     const auto [known, added] = context.families.emplace(axis.node, *profile);
     if (!added && known->second != *profile)
-      return fail(Errc::usage,
-                  formatted("the cabinet file has node {} on several buses, as {} and as {}", axis.node,
-                            known->second->family, axis.family),
-                  formatted("name the families of the recorded bus: -d {}={}", axis.node, axis.family));
+      return fail(
+          Errc::usage,
+          message("the cabinet file has node {} on several buses, as {} and as {}", axis.node,
+                  as_it_is(known->second->family), as_it_is(axis.family)),
+          message("name the families of the recorded bus: -d {}={}", axis.node, as_it_is(axis.family)));
   }
   return {};
 }
@@ -116,10 +117,10 @@ class Decoding {
     if (around_) around_->end();
     log_.flush();
     if (timeless_)
-      return fail(Errc::usage, formatted("{} has no date and no time of day", file),
+      return fail(Errc::usage, message("{} has no date and no time of day", as_it_is(file)),
                   "leave --clock out: the times then count from the first frame");
     if (around_ && around_->occasions() == 0 && count_ > 0)
-      context_->notices.push_back(formatted("{}: nothing of what --around names is in it", file));
+      context_->notices.push_back(message("{}: nothing of what --around names is in it", as_it_is(file)));
     return {};
   }
 
@@ -147,7 +148,7 @@ class Decoding {
 Result<void> check_options(const Arguments& arguments) {
   for (const auto* other : {"--around", "--service", "--object", "--raw", "--clock"})
     if (arguments.has("--summary") && arguments.has(other))
-      return fail(Errc::usage, formatted("--summary and {} exclude each other", other),
+      return fail(Errc::usage, message("--summary and {} exclude each other", other),
                   "the summary is of the whole recording; -n limits it to nodes");
   if (arguments.has("--within") && !arguments.has("--around"))
     return fail(Errc::usage, "--within needs --around", "name what to look for: `--around emcy`");
@@ -173,7 +174,7 @@ Result<Value> run_decode(Context& context, const Arguments& arguments) {
       bytes, [&](const can::LogFrame& line) { return decoding.add(line); }, options);
   if (const auto ended = decoding.end(file); !ended) return fail(ended.error());
   if (bytes.error() != 0)
-    return fail(Errc::file, formatted("cannot read {}: {}", file, can::system_text(bytes.error())));
+    return fail(Errc::file, message("cannot read {}: {}", as_it_is(file), can::system_text(bytes.error())));
   if (const auto told = tell_of(context, file, strays, decoding.count() > 0); !told)
     return fail(told.error());
   return decoding.answer();

@@ -42,13 +42,14 @@ Result<Operand> parse_operand(std::string_view word, settings::LineReader* lines
   if (word.starts_with(kNode)) {
     const auto number = parse_digits(word.substr(kNode.size()), 10);
     if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
-      return fail(Errc::usage, formatted("'{}' is not a node", word), "write node:1 to node:127");
+      return fail(Errc::usage, message("'{}' is not a node", as_it_is(word)), "write node:1 to node:127");
     out.node = static_cast<std::uint8_t>(*number);
     return out;
   }
   auto source = settings::open_backup(word, lines);
   if (!source) {
-    if (parse_digits(word, 10)) source.error().hint = formatted("write a drive as {}{}", kNode, word);
+    if (parse_digits(word, 10))
+      source.error().hint = message("write a drive as {}{}", as_it_is(kNode), as_it_is(word));
     return fail(source.error());
   }
   out.source = std::move(*source);
@@ -110,7 +111,7 @@ class Difference {
     const auto needy = std::find_if(operands_.begin(), operands_.end(),
                                     [](const Operand& operand) { return !operand.source; });
     if (profile_ != nullptr || needy == operands_.end()) return {};
-    return fail(Errc::usage, formatted("{}: which family?", needy->word),
+    return fail(Errc::usage, message("{}: which family?", as_it_is(needy->word)),
                 "add -d FAMILY; `drives` lists families");
   }
 
@@ -127,8 +128,9 @@ class Difference {
     const auto left = std::erase_if(
         sides_[i].values, [&](const auto& value) { return unreached_[1 - i].count(value.first) != 0; });
     if (left > 0)
-      context_->notices.push_back(formatted("{} values of {} are not compared: {} was read over Modbus", left,
-                                            operands_[i].word, operands_[1 - i].word));
+      context_->notices.push_back(message("{} values of {} are not compared: {} was read over Modbus", left,
+                                          settings::title_in_message(operands_[i].word),
+                                          settings::title_in_message(operands_[1 - i].word)));
   }
 
   /// The node that a side without one of its own stands for.
@@ -150,8 +152,9 @@ class Difference {
     }
     if (!family_.empty() && family_ != backup->family)
       return fail(Errc::negative,
-                  formatted("{} is for {}, {} for {}: they cannot be compared", operands_[1 - i].word,
-                            family_, operands_[i].word, backup->family));
+                  message("{} is for {}, {} for {}: they cannot be compared",
+                          settings::title_in_message(operands_[1 - i].word), as_it_is(family_),
+                          as_it_is(operands_[i].word), as_it_is(backup->family)));
     family_ = backup->family;
     return settings::side_of(*backup, operands_[i].word);
   }
@@ -161,10 +164,11 @@ class Difference {
     const auto& operand = operands_[i];
     if (!family_.empty() && family_ != profile_->family)
       return fail(Errc::refused,
-                  formatted("{} is for {}, not for {}", operands_[1 - i].word, family_, profile_->family),
+                  message("{} is for {}, not for {}", settings::title_in_message(operands_[1 - i].word),
+                          as_it_is(family_), as_it_is(profile_->family)),
                   "give the backup's family with -d if the drive really is one");
     if (context_->front_end == nullptr)
-      return fail(Errc::usage, formatted("{}: there is no bus to open here", operand.word));
+      return fail(Errc::usage, message("{}: there is no bus to open here", as_it_is(operand.word)));
     const auto session = context_->front_end->open_bus();
     if (!session) return fail(session.error());
     if (const auto right = context_->hold_family(std::span(&operand.node, 1), profile_, false); !right)

@@ -57,14 +57,15 @@ void tell_power_off(Context& context, std::uint8_t node, const motion::PowerDown
                         done.outcome ? Value(done_word) : Value("failed"),
                         Value(result_text(done, done_word)),
                         done.outcome ? Value() : show::error_record(done.outcome.error())});
-  for (const auto& note : done.notes) context.notices.push_back(formatted("node {}: {}", node, note));
+  for (const auto& note : done.notes)
+    context.notices.push_back(message("node {}: {}", node_name(node), note));
   if (energised)
     context.notices.push_back(
         done.statusword
-            ? formatted("node {} is still energised: {}; {}", node, drive::name(done.state()),
-                        aim == motion::PowerAim::disable ? "repeat `disable`, or switch off the supply"
-                                                         : "`disable` de-energises it")
-            : formatted("NODE {} MAY BE ENERGISED, STATE UNKNOWN: SWITCH OFF THE SUPPLY", node));
+            ? message("node {} is still energised: {}; {}", node_name(node), drive::name(done.state()),
+                      aim == motion::PowerAim::disable ? "repeat `disable`, or switch off the supply"
+                                                       : "`disable` de-energises it")
+            : message("NODE {} MAY BE ENERGISED, STATE UNKNOWN: SWITCH OFF THE SUPPLY", node));
 }
 
 /// The end state of a node is that of all its axes.
@@ -76,7 +77,8 @@ void stop_other_axes(Context& context, std::uint8_t node, motion::PowerAim aim) 
           motion::stop_axes(*context.session, node, others, aim == motion::PowerAim::disable);
       !stopped)
     context.errors.push_back(stopped.error());
-  for (const auto& axis : others) context.notices.push_back(formatted("node {}: {}", node, axis.text()));
+  for (const auto& axis : others)
+    context.notices.push_back(message("node {}: {}", node_name(node), axis.text()));
 }
 
 Value planned_disable(Context& context, motion::PowerAim aim) {
@@ -119,7 +121,7 @@ Result<Value> power_down(Context& context, motion::PowerAim aim, std::string_vie
       there.emplace(plans[i].node, &done[i]);
   if (there.empty())
     return fail(
-        Errc::timeout, formatted("no node answered on {}", context.session->url()),
+        Errc::timeout, message("no node answered on {}", as_it_is(context.session->url())),
         "drives that are energised there stay so: switch off the supply; then check cable, termination and bitrate");
   auto table = state_table();
   context.nodes.clear();

@@ -28,12 +28,12 @@ Result<Findings> examine_url(Context& context, const std::string& url,
                              const traffic::DoctorOptions& options) {
   if (url.find(':') == std::string::npos) return traffic::examine_link(url, options);
   if (session::is_modbus(url))
-    return fail(
-        Errc::usage, "`doctor` looks at CAN and EtherCAT, not at Modbus",
-        formatted("`scan --bus {}` asks all addresses, and says what comes instead of an answer", url));
+    return fail(Errc::usage, "`doctor` looks at CAN and EtherCAT, not at Modbus",
+                message("`scan --bus {}` asks all addresses, and says what comes instead of an answer",
+                        as_it_is(url)));
   if (session::canonical_url(context.front_end->bus_url()) != url)
-    return fail(Errc::usage, formatted("{} is looked at as the bus of the line", url),
-                formatted("`doctor --bus {}`", url));
+    return fail(Errc::usage, message("{} is looked at as the bus of the line", as_it_is(url)),
+                message("`doctor --bus {}`", as_it_is(url)));
   const auto session = context.front_end->open_bus();
   if (!session) return fail(session.error());
   return traffic::examine(**session, options);
@@ -47,8 +47,9 @@ std::vector<std::string> urls_of(const Context& context, const Arguments& argume
 
 Result<Value> run_doctor(Context& context, const Arguments& arguments) {
   if (arguments.has("--node") && arguments.text("--node") != "all")
-    return fail(Errc::usage, "`doctor` looks at a bus and all of its nodes, not at one",
-                formatted("`scan -n {}` asks it; leave -n out for the bus", arguments.text("--node")));
+    return fail(
+        Errc::usage, "`doctor` looks at a bus and all of its nodes, not at one",
+        message("`scan -n {}` asks it; leave -n out for the bus", as_it_is(arguments.text("--node"))));
   traffic::DoctorOptions options;
   const auto length = duration_option(arguments, "--for");
   if (!length) return fail(length.error());
@@ -65,10 +66,9 @@ Result<Value> run_doctor(Context& context, const Arguments& arguments) {
   }
   if (urls.empty()) all.push_back(traffic::examine_machine());
   if (const auto faults = traffic::faults_in(all); faults > 0)
-    context.errors.push_back(
-        make_error(Errc::negative,
-                   faults == 1 ? std::string("1 fault was found") : formatted("{} faults were found", faults),
-                   "begin with the first; each says what mends it"));
+    context.errors.push_back(make_error(
+        Errc::negative, faults == 1 ? Message("1 fault was found") : message("{} faults were found", faults),
+        "begin with the first; each says what mends it"));
   return findings_value(all);
 }
 

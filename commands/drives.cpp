@@ -18,10 +18,10 @@ std::vector<report::Value> row_of(Context& context, const drive::Family& family)
   const auto rules = drive::load_rules(family);
   const auto errors = drive::count_errors(drive::mistakes_of(family, context.drive_folders));
   if (!rules && rules.error().code == Errc::refused)
-    context.notices.push_back(formatted("{}; {}", rules.error().message, rules.error().hint));
+    context.notices.push_back(message("{}; {}", rules.error().message, rules.error().hint));
   else if (errors > 0)
-    context.notices.push_back(formatted("{0} is broken: {1} error{2}; `drives check {0}` lists them",
-                                        family.name, errors, errors == 1 ? "" : "s"));
+    context.notices.push_back(message("{0} is broken: {1} error{2}; `drives check {0}` lists them",
+                                      as_it_is(family.name), errors, errors == 1 ? "" : "s"));
   const auto name = rules ? rules->name : std::string();
   const auto name_zh = rules ? rules->name_zh : std::string();
   const auto& shown = context.chinese && !name_zh.empty() ? name_zh : name;

@@ -30,12 +30,12 @@ Result<Checked> checked_families(const Context& context, const std::string& word
   std::error_code ignored;
   if (word.find('/') != std::string::npos || word == ".") {
     if (!std::filesystem::is_directory(word, ignored))
-      return fail(Errc::usage, formatted("{} is not a folder", word),
+      return fail(Errc::usage, message("{} is not a folder", as_it_is(word)),
                   "name a family, or the folder of its files");
     out.folders.insert(out.folders.begin(), word);
     out.families = drive::find_families(std::span(out.folders).first(1));
     if (out.families.empty())
-      return fail(Errc::file, formatted("no drive family was found in {}", word),
+      return fail(Errc::file, message("no drive family was found in {}", as_it_is(word)),
                   "a family needs a .toml, .eds, .dcf or .xml file");
     return out;
   }
@@ -45,7 +45,8 @@ Result<Checked> checked_families(const Context& context, const std::string& word
   if (found == nullptr) {
     std::vector<std::string> names;
     for (const auto& family : out.families) names.push_back(family.name);
-    return fail(Errc::usage, formatted("no drive family is called '{}'", word), did_you_mean(word, names));
+    return fail(Errc::usage, message("no drive family is called '{}'", as_it_is(word)),
+                did_you_mean(word, names));
   }
   out.families = {*found};
   return out;
@@ -59,8 +60,9 @@ report::Record family_record(const drive::Family& family, std::span<const drive:
   for (const auto& one : found)
     findings.rows.push_back(
         {one.file, one.line ? report::Value(*one.line) : report::Value(), one.breaks ? "error" : "warning",
-         one.message, report::text_or_null(one.remedy),
-         one.remedy.empty() ? one.message : formatted("{}; {}", one.message, one.remedy)});
+         one.message.text(), report::text_or_null(one.remedy.text()),
+         one.remedy.empty() ? one.message.text()
+                            : formatted("{}; {}", one.message.text(), one.remedy.text())});
   return {{"family", family.name},
           {"files", family.stem.string() + ".*", Show::text},
           {"files", family.stem.string(), Show::json},
@@ -81,7 +83,8 @@ Result<report::Value> run_drives_check(Context& context, const Arguments& argume
     out.emplace_back(family_record(family, found, mistakes));
     if (mistakes > 0)
       context.errors.push_back(make_error(
-          Errc::negative, formatted("{}: {} error{}", family.name, mistakes, mistakes == 1 ? "" : "s"),
+          Errc::negative,
+          message("{}: {} error{}", as_it_is(family.name), mistakes, mistakes == 1 ? "" : "s"),
           "correct them before you use the family: servoctl refuses to load it, or would use a name, size or type that is "
           "wrong"));
   }

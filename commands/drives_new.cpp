@@ -34,7 +34,7 @@ Result<void> refuse_known(const Context& context, std::string_view name) {
   const auto families = drive::find_families(context.drive_folders);
   const auto* known = drive::find_family(families, name);
   if (known == nullptr) return {};
-  return fail(Errc::usage, formatted("the family {} exists", known->name),
+  return fail(Errc::usage, message("the family {} exists", known->name),
               "choose another name; servoctl overwrites no family");
 }
 
@@ -90,7 +90,7 @@ void tell_known_fits(Context& context, const od::EdsFile& sheet) {
   for (const auto& guess : session::guess_families(identity, families))
     if (!guess.generic) known.push_back(guess.family);
   if (!known.empty())
-    context.notices.push_back(formatted(
+    context.notices.push_back(message(
         "the identity in the data sheet fits {} as well: a match proves neither family, and commands that write "
         "or move need -d",
         fmt::join(known, ", ")));
@@ -140,8 +140,8 @@ Result<Made> make_family(Context& context, const Arguments& arguments) {
   out.parameters = params->rows;
   out.faults = faults->rows;
   if (const auto findings = sheet->diagnostics.size(); findings > 0)
-    context.notices.push_back(formatted("{}: {} errors, {} warnings; `eds check` explains them", from,
-                                        sheet->error_count(), sheet->warning_count()));
+    context.notices.push_back(message("{}: {} errors, {} warnings; `eds check` explains them", from,
+                                      sheet->error_count(), sheet->warning_count()));
   return out;
 }
 
@@ -161,7 +161,8 @@ Result<report::Value> run_drives_new(Context& context, const Arguments& argument
   const auto make = context.dry_run ? drive::try_family : drive::write_family;
   const auto place = make(family, *folder, context.drive_folders);
   if (!place) return fail(place.error());
-  if (context.dry_run) context.notices.push_back(formatted("dry run: {} is not written", place->string()));
+  if (context.dry_run)
+    context.notices.push_back(message("dry run: {} is not written", as_it_is(place->string())));
   std::vector<std::string> files;
   for (const auto& [name, content] : family.files) files.push_back(name);
   return report::Value(report::Record{

@@ -101,13 +101,13 @@ report::Record finding_record(const std::string& path, const Error& error, bool 
   for (const auto* key : {"product", "vendor", "objects", "entries", "errors", "warnings"})
     out.push_back({key, report::Value(), Show::json});
   out.push_back({"findings", report::List{}, Show::json});
-  if (!alone) out.push_back({"error", error.message, Show::text});
+  if (!alone) out.push_back({"error", error.message.text(), Show::text});
   out.push_back({"error", show::error_record(error), Show::json});
   return out;
 }
 
 Error errors_error(const std::string& path, std::size_t errors) {
-  return make_error(Errc::negative, formatted("{}: {} error{}", path, errors, errors == 1 ? "" : "s"),
+  return make_error(Errc::negative, message("{}: {} error{}", as_it_is(path), errors, errors == 1 ? "" : "s"),
                     "the remedy column says what to change; everything else in the file is usable");
 }
 

@@ -40,7 +40,8 @@ Result<report::Value> run_eds_learn(Context& context, const Arguments& arguments
       context.notices.push_back("--range scans the drive: the EDS that it may store (1021h) is not read");
   }
   if (is_output_form(arguments.text("--output")))
-    return fail(Errc::usage, formatted("'{}' is an output format, and no file", arguments.text("--output")),
+    return fail(Errc::usage,
+                message("'{}' is an output format, and no file", as_it_is(arguments.text("--output"))),
                 "name the file: -o drive.eds");
   if (context.nodes.size() != 1)
     return fail(Errc::usage, "eds learn takes one node: a file is of one drive", "name one with --node");

@@ -25,8 +25,8 @@ Result<od::EdsFile> sheet_of(Context& context, const std::string& word) {
   if (!text) return fail(text.error());
   auto file = od::read_data_sheet(*text, word);
   if (file && file->error_count() > 0)
-    context.notices.push_back(
-        formatted("{0}: {1} errors; `eds check {0}` lists what is not compared", word, file->error_count()));
+    context.notices.push_back(message("{0}: {1} errors; `eds check {0}` lists what is not compared",
+                                      as_it_is(word), file->error_count()));
   return file;
 }
 

@@ -158,7 +158,7 @@ class Enabling {
     const auto state = motion::Power(*context_->session, *context_->profile, motion.node()).state();
     if (!state || *state == drive::DriveState::operation_enabled) return {};
     return fail(drive_error(Errc::negative, motion.node(),
-                            formatted("was enabled but did not stay so: it is in {}", drive::name(*state)),
+                            message("was enabled but did not stay so: it is in {}", drive::name(*state)),
                             "see `status` and `fault show`"));
   }
 
@@ -175,8 +175,8 @@ class Enabling {
         continue;
       }
       if (done) {
-        context_->notices.push_back(
-            formatted("node {} had been enabled by this line; it has been stopped and disabled", node));
+        context_->notices.push_back(message(
+            "node {} had been enabled by this line; it has been stopped and disabled", node_name(node)));
         taken_back_.insert(node);
         continue;
       }

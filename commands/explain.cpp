@@ -61,7 +61,7 @@ Result<Shelf> open_shelf(Context& context) {
     auto topics = profile ? drive::load_own_topics(**profile) : Result<std::vector<drive::Topic>>();
     if (!profile || !topics) {
       context.notices.push_back(
-          formatted("{}; {} is left out", (profile ? topics.error() : profile.error()).message, family.name));
+          message("{}; {} is left out", (profile ? topics.error() : profile.error()).message, family.name));
       continue;
     }
     leave_out_own(*topics);
@@ -179,8 +179,9 @@ tl::unexpected<Error> no_entry_found(const Context& context, const Shelf& shelf,
             ? "`explain` lists the topics; `fault list` looks for words in faults"
             : "`explain` lists the topics; `param search WORD` and `fault list` look for words in parameters and faults";
   return fail(Errc::negative,
-              family.empty() ? formatted("nothing is called '{}' or mentions it", said)
-                             : formatted("nothing of {} is called '{}' or mentions it", family, said),
+              family.empty()
+                  ? message("nothing is called '{}' or mentions it", as_it_is(said))
+                  : message("nothing of {} is called '{}' or mentions it", as_it_is(family), as_it_is(said)),
               std::move(hint));
 }
 
@@ -210,8 +211,9 @@ Result<report::Value> run_explain(Context& context, const Arguments& arguments) 
     if (auto absent = show::not_in_manual(query, *context.profile); !absent.empty())
       return fail(Errc::negative, std::move(absent));
   if (is_of_the_standard_alone(context, query, all))
-    return fail(Errc::negative, formatted("not on this drive: {} has no '{}'", context.profile->family, said),
-                formatted("`explain {}` without -d shows the meaning in the standard", said));
+    return fail(Errc::negative,
+                message("not on this drive: {} has no '{}'", context.profile->family, as_it_is(said)),
+                message("`explain {}` without -d shows the meaning in the standard", as_it_is(said)));
   if (all.empty()) return no_entry_found(context, *shelf, query);
   note_absent(context, query);
   return told(context, all, in_families);

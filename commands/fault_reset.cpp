@@ -39,7 +39,7 @@ Value planned_resets(Context& context) {
       continue;
     }
     if (planned->empty())
-      context.notices.push_back(formatted("node {} is not in Fault: nothing would be sent", node));
+      context.notices.push_back(message("node {} is not in Fault: nothing would be sent", node_name(node)));
     messages.insert(messages.end(), planned->begin(), planned->end());
   }
   return show::planned_messages(context, messages);

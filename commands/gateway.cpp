@@ -48,7 +48,7 @@ void stop_and_tell(Context& context, motion::PowerWrites& written, const std::se
   motion::stop_abandoned(context, nodes);
   written.end(context, nodes);
   for (auto at = before; at < context.errors.size(); ++at)
-    context.tell("error: " + context.errors[at].message + "\n");
+    context.tell("error: " + context.errors[at].message.text() + "\n");
 }
 
 /// `0.1` of 0.1.0: all that `info version` has room for.

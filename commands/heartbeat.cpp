@@ -82,9 +82,10 @@ Result<std::string> by_node(const Context& context, const std::string& word) {
   if (axis == nullptr) return word;
   for (const auto* watching : context.axes)
     if (watching->bus != axis->bus)
-      return fail(Errc::usage,
-                  formatted("axis {} is on bus {}, {} on bus {}: no heartbeat gets from one to the other",
-                            name, axis->bus, watching->name, watching->bus));
+      return fail(
+          Errc::usage,
+          message("axis {} is on bus {}, {} on bus {}: no heartbeat gets from one to the other",
+                  as_it_is(name), as_it_is(axis->bus), as_it_is(watching->name), as_it_is(watching->bus)));
   return formatted("{}{}", axis->node, word.substr(equals));
 }
 

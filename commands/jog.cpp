@@ -66,7 +66,7 @@ Result<motion::Jog> parse_jog(const Arguments& arguments) {
   if (arguments.has("--turns")) {
     jog.turns = parse_real(arguments.text("--turns"));
     if (!jog.turns || *jog.turns <= 0)
-      return fail(Errc::usage, formatted("'{}' is not a number of turns", arguments.text("--turns")),
+      return fail(Errc::usage, message("'{}' is not a number of turns", as_it_is(arguments.text("--turns"))),
                   "write 3 or 0.5; the sign of the speed is the direction");
   }
   if (int{jog.length.has_value()} + int{jog.turns.has_value()} + int{arguments.has("--until-key")} > 1)

@@ -76,7 +76,7 @@ Result<ScanWish> scan_wish(const Arguments& arguments) {
   const auto number = parse_integer(arguments.text("--assign"));
   const auto node = number ? number->as_unsigned() : std::nullopt;
   if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-    return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("--assign")),
+    return fail(Errc::usage, message("'{}' is not a node-ID", as_it_is(arguments.text("--assign"))),
                 "node-IDs are 1 to 127");
   out.first = static_cast<std::uint8_t>(*node);
   return out;
@@ -112,8 +112,7 @@ void tell_found(Context& context, const ScanWish& wish, std::span<const session:
   for (const auto& each : found)
     if (each.slaves > 1)
       context.errors.push_back(make_error(
-          Errc::refused,
-          formatted("{} LSS slaves have one identity: {}", each.slaves, to_string(each.address)),
+          Errc::refused, message("{} LSS slaves have one identity: {}", each.slaves, to_string(each.address)),
           "LSS cannot tell them apart: switch all but one of them off, and take one after the other"));
   if (!found.empty() || wish.first) return;
   context.notices.push_back(
@@ -186,7 +185,7 @@ Result<std::vector<std::uint8_t>> nodes_from(std::uint8_t first, std::size_t cou
   std::vector<std::uint8_t> out;
   for (std::size_t i = 0; i < count; ++i) {
     if (first + i > canopen::kLastNode)
-      return fail(Errc::usage, formatted("{} slaves from node-ID {} on go beyond 127", count, first),
+      return fail(Errc::usage, message("{} slaves from node-ID {} on go beyond 127", count, first),
                   "begin lower");
     out.push_back(static_cast<std::uint8_t>(first + i));
   }
@@ -224,7 +223,7 @@ Result<Value> assign(Context& context, const ScanWish& wish, std::vector<session
   const auto todo = all.first(static_cast<std::size_t>(configured - found.begin()));
   for (const auto& each : all.subspan(todo.size()))
     context.notices.push_back(
-        formatted("node {} answers fastscan, but has a node-ID: it was left alone", *each.node));
+        message("node {} answers fastscan, but has a node-ID: it was left alone", node_name(*each.node)));
   const auto nodes = nodes_from(*wish.first, todo.size());
   if (!nodes) return fail(nodes.error());
   if (context.errors.empty() && todo.empty())

@@ -54,7 +54,7 @@ Result<LssBitrateChange> bitrate_wish(const Context& context, const Arguments& a
     if (!bitrate) return fail(bitrate.error());
     const auto index = canopen::lss_bit_timing(*bitrate);
     if (!index)
-      return fail(Errc::usage, formatted("LSS has no {}", drive::bitrate_text(*bitrate)),
+      return fail(Errc::usage, message("LSS has no {}", drive::bitrate_text(*bitrate)),
                   "1M, 800k, 500k, 250k, 125k, 50k, 20k, 10k (CiA 305, table 0), or auto");
     out.index = *index;
     out.bitrate = bitrate.value();
@@ -64,7 +64,7 @@ Result<LssBitrateChange> bitrate_wish(const Context& context, const Arguments& a
   if (*delay) {
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(**delay).count();
     if (ms < 1 || **delay > kLongestDelay)
-      return fail(Errc::usage, formatted("--activate {} is not possible", to_string(**delay)),
+      return fail(Errc::usage, message("--activate {} is not possible", to_string(**delay)),
                   "1ms to 65s: long enough to change the interface as well");
     out.delay_ms = static_cast<std::uint16_t>(ms);
   }
@@ -73,7 +73,7 @@ Result<LssBitrateChange> bitrate_wish(const Context& context, const Arguments& a
     return out;
   }
   for (const auto name : {"--vendor", "--product", "--revision", "--serial", "--only"})
-    if (arguments.has(name)) return fail(Errc::usage, formatted("--all and {} contradict each other", name));
+    if (arguments.has(name)) return fail(Errc::usage, message("--all and {} contradict each other", name));
   return out;
 }
 
@@ -97,7 +97,7 @@ std::string question_lss_set_bitrate(const LssBitrateChange& change, const Bitra
 void tell_bitrate(Context& context, const LssBitrateChange& wish, const BitrateSwitch& follower) {
   if (follower.follows()) return;
   if (follower.link != nullptr)
-    context.notices.push_back(formatted("{} is left alone: {}", follower.link->name(), follower.why_not));
+    context.notices.push_back(message("{} is left alone: {}", follower.link->name(), follower.why_not));
   const auto url = session::canonical_url(context.session->url());
   if (!wish.delay_ms)
     context.notices.push_back(
@@ -106,20 +106,21 @@ void tell_bitrate(Context& context, const LssBitrateChange& wish, const BitrateS
             : "it is not in force: --activate DELAY puts it in force, --keep stores it for the next start");
   if (url.starts_with("slcan:")) {
     if (wish.bitrate)
-      context.notices.push_back(formatted(
-          "{} the bus has to be named with that bitrate: slcan:PORT@{}; then `lss inquire` or `scan`",
-          wish.delay_ms ? "now" : "then", *wish.bitrate));
+      context.notices.push_back(
+          message("{} the bus has to be named with that bitrate: slcan:PORT@{}; then `lss inquire` or `scan`",
+                  wish.delay_ms ? "now" : "then", *wish.bitrate));
     return;
   }
   if (const auto link = session::link_of(url); !link || link->kind != "can") {
-    context.notices.push_back(formatted(
-        "{} has no bitrate: slaves that are simulated take it, and nothing follows", context.session->url()));
+    context.notices.push_back(
+        message("{} has no bitrate: slaves that are simulated take it, and nothing follows",
+                as_it_is(context.session->url())));
     return;
   }
   if (!wish.bitrate || (follower.link && follower.before.bitrate == wish.bitrate)) return;
-  context.notices.push_back(formatted(
+  context.notices.push_back(message(
       "{} the interface has to change as well: `bus up {} --bitrate {}`; then `lss inquire` or `scan`",
-      wish.delay_ms ? "now" : "then", url, *wish.bitrate));
+      wish.delay_ms ? "now" : "then", as_it_is(url), as_it_is(*wish.bitrate)));
 }
 
 /// How the interface goes with the slaves, where they change now.
@@ -151,8 +152,8 @@ report::Record lss_bitrate_record(const LssBitrateChange& change,
 Result<Value> planned_lss_set_bitrate(Context& context, const LssBitrateChange& change,
                                       const BitrateSwitch& follower) {
   if (follower.follows())
-    context.notices.push_back(formatted("then {}, unless somebody would be left behind: nobody was asked",
-                                        settings::lss_switch_commands(follower)));
+    context.notices.push_back(message("then {}, unless somebody would be left behind: nobody was asked",
+                                      settings::lss_switch_commands(follower)));
   return lss_planned_frames({change.address}, settings::lss_bitrate_requests(change));
 }
 

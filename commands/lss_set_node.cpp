@@ -32,7 +32,7 @@ Result<std::uint8_t> new_node(const Arguments& arguments) {
   const bool good =
       node && ((*node >= canopen::kFirstNode && *node <= canopen::kLastNode) || *node == kUnconfigured);
   if (!good)
-    return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("new")),
+    return fail(Errc::usage, message("'{}' is not a node-ID", as_it_is(arguments.text("new"))),
                 "node-IDs are 1 to 127; 255 takes the node-ID away (CiA 305)");
   return static_cast<std::uint8_t>(*node);
 }

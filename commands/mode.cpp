@@ -34,7 +34,7 @@ Result<std::int8_t> parse_mode(const drive::Profile& profile, std::string_view t
     for (const auto& label : *meaning.labels)
       for (const auto word : drive::label_words(label.label)) offered.emplace_back(word);
   const auto near = did_you_mean(text, offered);
-  return fail(Errc::usage, formatted("'{}' is not a mode of this family", text),
+  return fail(Errc::usage, message("'{}' is not a mode of this family", as_it_is(text)),
               !near.empty()     ? near
               : offered.empty() ? std::string("write its number: 1 to 10 are the CiA 402 modes")
                                 : std::string("`objects 0x6060` lists them"));
@@ -55,7 +55,7 @@ Result<void> check_change(Context& context, const WantedMode& wanted) {
   if (!state) return fail(state.error());
   if (!drive::is_energised(*state)) return {};
   return fail(drive_error(Errc::refused, wanted.node,
-                          formatted("is energised ({}): a mode change may move it", drive::name(*state)),
+                          message("is energised ({}): a mode change may move it", drive::name(*state)),
                           "`disable` it first"));
 }
 

@@ -51,7 +51,7 @@ Result<std::uint32_t> bitrate_option(const Arguments& arguments) {
   if (factor > 1) text.remove_suffix(1);
   const auto number = parse_digits(text, 10);
   if (!number || *number == 0 || *number > 1'000'000 || *number * factor > 1'000'000)
-    return fail(Errc::usage, formatted("'{}' is not a bitrate", arguments.text("--bitrate")),
+    return fail(Errc::usage, message("'{}' is not a bitrate", as_it_is(arguments.text("--bitrate"))),
                 "write 125k, 250k, 500k or 1M; CANopen has at most 1 Mbit/s");
   return static_cast<std::uint32_t>(*number * factor);
 }

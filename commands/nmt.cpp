@@ -82,10 +82,10 @@ Result<void> look_for_life(Context& context, NmtCommand command, std::vector<Bef
   if (!stops) tell_doubled(context, nodes);
   for (const auto& entry : nodes) {
     if (entry.alive || entry.doubled) continue;
-    auto error = drive_error(
-        Errc::timeout, entry.node,
-        formatted("'{}' was sent, not confirmed: nothing was heard of the node", canopen::name(command)),
-        "check node-ID, power and cable; `scan` shows who answers");
+    auto error = drive_error(Errc::timeout, entry.node,
+                             message("'{}' was sent, not confirmed: nothing was heard of the node",
+                                     as_it_is(canopen::name(command))),
+                             "check node-ID, power and cable; `scan` shows who answers");
     if (stops)
       context.notices.push_back(error.message);
     else
@@ -153,7 +153,7 @@ Result<void> refuse_stopped(const session::Session& session, const Before& entry
   return fail(drive_error(
       Errc::refused, entry.node,
       "it is stopped (NMT) and answers no SDO, so whether two drives have its node-ID is not known: not reset",
-      formatted("`nmt preop -n {}` first", entry.node)));
+      message("`nmt preop -n {}` first", node_name(entry.node))));
 }
 
 /// Whose drives they are is seen before what begins something is sent.

@@ -50,7 +50,7 @@ Result<Plan> plan_of(const Arguments& arguments) {
     return fail(Errc::usage, "--life is for node guarding only: it needs --guard", "--guard 100ms --life 3");
   const auto life = parse_digits(arguments.text("--life"), 10);
   if (!life || *life < 1 || *life > 255)
-    return fail(Errc::usage, formatted("'{}' is not a life time factor", arguments.text("--life")),
+    return fail(Errc::usage, message("'{}' is not a life time factor", as_it_is(arguments.text("--life"))),
                 "write 1..255");
   plan.life_factor = static_cast<std::uint32_t>(*life);
   return plan;
@@ -173,23 +173,23 @@ class Log {
   }
 
   void complain(const Row& row) {
-    std::string what;
-    std::string hint = "try --guard 1s";
+    Message what;
+    Message hint = "try --guard 1s";
     if (row.lost > 0 && was_there(row)) {
-      what = formatted("was lost {} time{}", row.lost, row.lost == 1 ? "" : "s");
-      hint.clear();
+      what = message("was lost {} time{}", row.lost, row.lost == 1 ? Message() : Message("s"));
+      hint = {};
     } else if (regular(row)) {
       return;
     } else if (row.told && *row.told) {
       const auto period = load_le(**row.told) & 0xFFFFU;
-      what = period == 0 ? "sends no heartbeat"
-                         : formatted("no heartbeat came, although 1017h is {} ms", period);
+      what = period == 0 ? Message("sends no heartbeat")
+                         : message("no heartbeat came, although 1017h is {} ms", period);
       if (period == 0)
-        hint = formatted("`heartbeat set 500ms -n {}` switches it on; or {}", row.node, std::move(hint));
+        hint = message("`heartbeat set 500ms -n {}` switches it on; or {}", node_name(row.node), hint);
     } else if (answered(row)) {
       const auto code = row.told->error().abort_code;
       what = code == canopen::sdo_abort::kNoObject || code == canopen::sdo_abort::kNoSubIndex
-                 ? std::string("no heartbeat came, and it has no 1017h to enable one")
+                 ? Message("no heartbeat came, and it has no 1017h to enable one")
                  : "no heartbeat came, and 1017h could not be read: " + row.told->error().message;
     } else if (heard(row)) {
       what = "no heartbeat and no SDO answer; only boot-up or emergency messages were received";

@@ -47,14 +47,15 @@ Result<report::Value> run_objects(Context& context, const Arguments& arguments) 
         shown.push_back(&entry);
       }
   if (shown.empty())
-    return fail(Errc::negative, formatted("no object of {} matches '{}'", profile.family, pattern),
+    return fail(Errc::negative,
+                message("no object of {} matches '{}'", as_it_is(profile.family), as_it_is(pattern)),
                 "try a shorter word, or 0x60* for a range of indexes");
   show::explain_marks(table);
   if (parse_object_address(pattern))
     for (const auto* entry : shown) add_values(context, *entry, table);
   if (profile.configured_node != 0)
-    context.notices.push_back(
-        formatted("{} is the configuration of node {}", profile.family, profile.configured_node));
+    context.notices.push_back(message("{} is the configuration of node {}", as_it_is(profile.family),
+                                      node_name(profile.configured_node)));
   return report::Value(std::move(table));
 }
 

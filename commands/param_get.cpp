@@ -26,8 +26,7 @@ Result<std::vector<drive::Target>> wanted_parameters(const drive::Profile& profi
       const auto target = drive::resolve_panel(profile, word, drive::Match::part);
       if (!target) return fail(target.error());
       if (!od::readable(drive::meaning(*target, 0).access))
-        return fail(Errc::usage, formatted("{} is write-only", target->in_sentence()),
-                    "`param set` writes it");
+        return fail(Errc::usage, message("{} is write-only", target->in_sentence()), "`param set` writes it");
       out.push_back(*target);
       continue;
     }
@@ -36,7 +35,7 @@ Result<std::vector<drive::Target>> wanted_parameters(const drive::Profile& profi
       if (show::fits(word, parameter.id) && parameter.object && od::readable(parameter.access))
         out.push_back(drive::target_at(&profile, *parameter.object));
     if (out.size() == before)
-      return fail(Errc::usage, formatted("no readable parameter matches '{}'", word),
+      return fail(Errc::usage, message("no readable parameter matches '{}'", as_it_is(word)),
                   "`param list` shows all");
   }
   return out;

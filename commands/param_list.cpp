@@ -37,10 +37,10 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
     if (context.chinese)
       for (auto& group : groups) group = report::chinese_word(group);
     return fail(Errc::negative,
-                formatted("no parameter of {} matches '{}'", context.profile->family, pattern),
+                message("no parameter of {} matches '{}'", context.profile->family, as_it_is(pattern)),
                 groups.empty()
                     ? std::string("`param search WORD` looks for words in names")
-                    : formatted("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
+                    : message("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
   }
   return report::Value(show::parameter_table(found, context.chinese));
 }

@@ -39,8 +39,9 @@ Result<report::Value> run_param_search(Context& context, const Arguments& argume
   if (!best.empty()) return report::Value(show::parameter_table(best, context.chinese));
   const auto absent = show::not_in_manual(query, profile);
   if (!absent.empty()) return fail(Errc::negative, absent);
-  return fail(Errc::negative, formatted("no parameter of {} mentions '{}'", profile.family, said),
-              formatted("`explain {}` looks in objects, faults and topics as well", said));
+  return fail(Errc::negative,
+              message("no parameter of {} mentions '{}'", as_it_is(profile.family), as_it_is(said)),
+              message("`explain {}` looks in objects, faults and topics as well", as_it_is(said)));
 }
 
 constexpr Example kParamSearchExamples[] = {

@@ -35,8 +35,8 @@ Result<report::Value> run_pdo_apply(Context& context, const Arguments& arguments
     auto wanted = pdo::follow(*context.profile, present, file->pdos);
     if (wanted) return wanted;
     auto error = wanted.error();
-    error.message = formatted("{}{}: {}", arguments.text("file"),
-                              error.line ? formatted(":{}", *error.line) : std::string(), error.message);
+    error.message = message("{}{}: {}", as_it_is(arguments.text("file")),
+                            error.line ? message(":{}", *error.line) : std::string(), error.message);
     return fail(std::move(error));
   };
   return pdo::change_pdos(

@@ -23,7 +23,7 @@ Result<void> act(const Context& context, const pdo::PresentPdos& present, Action
   const bool linked = present.values.count({pdo.communication_index(), 1}) > 0;
   const auto name = canopen::name(pdo.direction, pdo.number);
   if (action == Action::enable && pdo.entries.empty())
-    return fail(Errc::usage, name + " carries nothing yet", formatted("`pdo map {} OBJECT…`", name));
+    return fail(Errc::usage, name + " carries nothing yet", message("`pdo map {} OBJECT…`", as_it_is(name)));
   if (action == Action::clear) pdo.entries.clear();
   if (linked && action == Action::enable)
     if (const auto on = pdo::switch_on(pdo, present.node); !on) return on;

@@ -51,7 +51,8 @@ Result<std::optional<std::uint8_t>> byte_option(const Arguments& arguments, std:
   const auto number = parse_integer(arguments.text(name));
   const auto value = number ? number->as_unsigned() : std::nullopt;
   if (!value || *value > 255)
-    return fail(Errc::usage, formatted("{}: '{}' is not a number from 0 to 255", name, arguments.text(name)));
+    return fail(Errc::usage,
+                message("{}: '{}' is not a number from 0 to 255", name, as_it_is(arguments.text(name))));
   return std::optional(static_cast<std::uint8_t>(*value));
 }
 
@@ -60,11 +61,11 @@ Result<std::optional<std::uint16_t>> steps_option(const Arguments& arguments, st
                                                   Duration step) {
   if (!arguments.has(name)) return std::optional<std::uint16_t>();
   const auto time = read_duration(arguments.text(name));
-  if (!time) return fail(Errc::usage, formatted("{}: {}", name, time.error().message), time.error().hint);
+  if (!time) return fail(Errc::usage, message("{}: {}", name, time.error().message), time.error().hint);
   const auto most = std::chrono::duration<double, std::milli>(step * 0xFFFF);
   if (*time % step != Duration::zero() || *time / step > 0xFFFF)
-    return fail(Errc::usage, formatted("{}: '{}' is not a valid time", name, arguments.text(name)),
-                formatted("in steps of {}, at most {:g} ms", to_string(step), most.count()));
+    return fail(Errc::usage, message("{}: '{}' is not a valid time", name, as_it_is(arguments.text(name))),
+                message("in steps of {}, at most {:g} ms", to_string(step), most.count()));
   return std::optional(static_cast<std::uint16_t>(*time / step));
 }
 
@@ -104,9 +105,9 @@ bool counts_event(const drive::Profile& profile, std::uint8_t type) {
 
 Error no_timer(const Pdo& pdo, std::optional<std::uint8_t> right) {
   return make_error(Errc::usage,
-                    formatted("{}: transmission type {} does not use the event timer",
-                              canopen::name(pdo.direction, pdo.number), pdo.type),
-                    right ? formatted("use --type {}, or leave --event out", *right)
+                    message("{}: transmission type {} does not use the event timer",
+                            canopen::name(pdo.direction, pdo.number), pdo.type),
+                    right ? message("use --type {}, or leave --event out", *right)
                           : "no type of this drive uses it; leave --event out");
 }
 
@@ -125,8 +126,8 @@ Result<void> settle_event(Context& context, const Options& options, std::uint8_t
   if (options.type || !right) return fail(no_timer(pdo, right));
   const auto name = canopen::name(pdo.direction, pdo.number);
   context.notices.push_back(
-      formatted("node {}, {}: transmission type {} does not use the event timer: type {} is set", node, name,
-                pdo.type, *right));
+      message("node {}, {}: transmission type {} does not use the event timer: type {} is set",
+              node_name(node), name, pdo.type, *right));
   pdo.type = *right;
   return {};
 }
@@ -145,8 +146,8 @@ Result<void> check_pdo_map(Context& context, const Arguments& arguments) {
     for (const auto node : context.nodes)
       if (const auto can_id = pdo::parse_pdo_can_id(options->cob_id, node); !can_id) {
         auto error = can_id.error();
-        error.message =
-            formatted("node {}, {}: {}", node, canopen::name(pdo->direction, pdo->number), error.message);
+        error.message = message("node {}, {}: {}", node_name(node),
+                                canopen::name(pdo->direction, pdo->number), error.message);
         error.node = node;
         return fail(std::move(error));
       }

@@ -28,8 +28,8 @@ Result<const drive::PdoPreset*> preset_of(const Context& context, const Argument
   std::vector<std::string> names;
   for (const auto& preset : presets) names.push_back(preset.name);
   return fail(Errc::usage,
-              formatted("the manual of {} has no mapping for '{}'", context.profile->family, word),
-              names.empty() ? "it has none; `pdo map` makes one" : formatted("use {}", one_of(names)));
+              message("the manual of {} has no mapping for '{}'", context.profile->family, as_it_is(word)),
+              names.empty() ? "it has none; `pdo map` makes one" : message("use {}", one_of(names)));
 }
 
 Result<void> check_pdo_preset(Context& context, const Arguments& arguments) {

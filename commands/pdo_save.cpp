@@ -20,7 +20,7 @@ Result<report::Value> run_pdo_save(Context& context, const Arguments& arguments)
   const std::filesystem::path path(arguments.text("file"));
   const auto extension = lower(path.extension().string());
   if (extension != ".toml" && extension != ".json")
-    return fail(Errc::usage, formatted("'{}': a PDO file must end in .toml or .json", path.string()));
+    return fail(Errc::usage, message("'{}': a PDO file must end in .toml or .json", as_it_is(path.string())));
   if (context.nodes.size() != 1) return fail(Errc::usage, "one file takes the PDOs of one node", "say -n 1");
   const auto node = context.nodes.front();
   const auto read = session::read_pdo_values(*context.session, context.profile, context.nodes).front();

@@ -28,15 +28,16 @@ constexpr Parameter kPdoSendParameters[] = {
 
 Result<void> check_usable(const show::PdoView& view) {
   if (view.pdo.direction == canopen::PdoDirection::transmit)
-    return fail(Errc::usage, formatted("{} is a TPDO", view.name), "only RPDOs can be sent");
+    return fail(Errc::usage, message("{} is a TPDO", view.name), "only RPDOs can be sent");
   if (!view.pdo.is_valid())
-    return fail(Errc::negative, formatted("node {}: {} is not in use", view.node, view.name),
+    return fail(Errc::negative, message("node {}: {} is not in use", node_name(view.node), view.name),
                 "bit 31 of its COB-ID is set; `pdo enable` clears it");
   if (view.pdo.entries.empty())
-    return fail(Errc::negative, formatted("node {}: {} maps nothing", view.node, view.name),
+    return fail(Errc::negative, message("node {}: {} maps nothing", node_name(view.node), view.name),
                 "`pdo map` maps objects into it");
   if (view.pdo.bits() > 64)
-    return fail(Errc::negative, formatted("node {}: {} is too long for classical CAN", view.node, view.name),
+    return fail(Errc::negative,
+                message("node {}: {} is too long for classical CAN", node_name(view.node), view.name),
                 "`pdo show` shows its length");
   return {};
 }
@@ -48,8 +49,8 @@ Result<void> check_count(const show::PdoView& view, std::size_t given) {
   std::string order;
   for (const auto& name : names) append(order, name);
   return fail(Errc::usage,
-              formatted("{} carries {} value{}, {} given", view.name, names.size(),
-                        names.size() == 1 ? "" : "s", given),
+              message("{} carries {} value{}, {} given", view.name, names.size(),
+                      names.size() == 1 ? "" : "s", given),
               "in this order: " + order);
 }
 
@@ -87,13 +88,14 @@ Result<void> check_operational(Context& context, const show::PdoView& view) {
   if (!state) return fail(state.error());
   if (!*state) {
     context.notices.push_back(
-        formatted("node {}: not known whether it is operational (no heartbeat{}); if not, it ignores PDOs",
-                  view.node, context.dry_run ? ", and a dry run does not guard it" : ""));
+        message("node {}: not known whether it is operational (no heartbeat{}); if not, it ignores PDOs",
+                node_name(view.node), context.dry_run ? ", and a dry run does not guard it" : ""));
     return {};
   }
   if (**state == session::NodeState::operational) return {};
-  return fail(Errc::negative, formatted("node {} is {}: it ignores PDOs", view.node, session::name(**state)),
-              formatted("`nmt start -n {}` makes it operational", view.node));
+  return fail(Errc::negative,
+              message("node {} is {}: it ignores PDOs", node_name(view.node), session::name(**state)),
+              message("`nmt start -n {}` makes it operational", node_name(view.node)));
 }
 
 report::Written written_values(const show::PdoView& view, const can::Frame& frame) {
@@ -131,7 +133,7 @@ Result<Value> run_pdo_send(Context& context, const Arguments& arguments) {
   }
   if (const auto sent = context.session->can()->send(message->frame); !sent) return fail(sent.error());
   if (view.pdo.type <= kLastSynchronous)
-    context.notices.push_back(formatted("{} takes effect at the next SYNC: `sync once`", view.name));
+    context.notices.push_back(servoctl::message("{} takes effect at the next SYNC: `sync once`", view.name));
   return Value(std::move(answer));
 }
 

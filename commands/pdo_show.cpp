@@ -148,7 +148,8 @@ Result<Value> run_pdo_show(Context& context, const Arguments&) {
     NodePdos node{context.nodes[i], *read[i], session::pdos_of(*read[i]), {}, {}};
     if (context.profile != nullptr) node.factory = session::default_pdo_values(*context.profile, node.node);
     if (node.pdos.empty())
-      context.notices.push_back(formatted("node {} has no PDO parameters that can be read", node.node));
+      context.notices.push_back(
+          message("node {} has no PDO parameters that can be read", node_name(node.node)));
     node.assigned = session::assigned_pdos(context.profile, node.values);
     all.push_back(std::move(node));
   }

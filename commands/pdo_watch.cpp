@@ -49,7 +49,7 @@ Result<void> add_pdos(Context& context, const Arguments& arguments, std::uint8_t
     const auto view = pdo::find_view(*views, node, name);
     if (!view) return fail(view.error());
     if (!ring && !(*view)->pdo.is_valid())
-      return fail(Errc::negative, formatted("node {}: {} is not in use", node, (*view)->name),
+      return fail(Errc::negative, message("node {}: {} is not in use", node_name(node), (*view)->name),
                   "bit 31 of its COB-ID is set; `pdo enable` clears it");
     out.push_back({**view});
   }
@@ -182,7 +182,7 @@ void tell_silence(Context& context, std::span<const Watched> watched, std::uint6
   const bool silent = std::all_of(watched.begin(), watched.end(),
                                   [](const Watched& entry) { return entry.rhythm.count() == 0; });
   if (silent && fd_frames > 0)
-    context.notices.push_back(formatted(
+    context.notices.push_back(message(
         "no PDO of classical CAN came; CAN FD frames that came and were not read: {}. Is a node set to CAN FD?",
         fd_frames));
   else if (silent)
@@ -205,8 +205,9 @@ void tell_ended(Context& context, std::span<const Watched> watched) {
   for (const auto& entry : watched) nodes.insert(entry.view.node);
   for (const auto node : nodes)
     if (context.session->ethercat()->image_of(node) == nullptr)
-      context.errors.push_back(drive_error(Errc::negative, node, "its process data have ended",
-                                           formatted("`status -n {}` shows its state and why", node)));
+      context.errors.push_back(
+          drive_error(Errc::negative, node, "its process data have ended",
+                      message("`status -n {}` shows its state and why", node_name(node))));
 }
 
 /// Shows what comes until it is ended; of each PDO it keeps how often it came.
@@ -248,7 +249,7 @@ Result<Value> run_pdo_watch(Context& context, const Arguments& arguments) {
   if (!length) return fail(length.error());
   if (context.session->gateway() != nullptr)
     return fail(Errc::usage,
-                formatted("'pdo watch' needs CAN or EtherCAT, {} is neither", context.session->url()),
+                message("'pdo watch' needs CAN or EtherCAT, {} is neither", as_it_is(context.session->url())),
                 "`watch` reads objects there, again and again");
   Mappings mappings(context, !arguments.has("pdo"));
   auto watched = watched_pdos(context, arguments);

@@ -65,7 +65,7 @@ Result<std::vector<drive::Target>> fitting_targets(const Context& context, std::
   });
   if (out.empty())
     return fail(Errc::usage, "no object that can be read fits '" + pattern + "'",
-                formatted("`objects '{}'` lists what fits", pattern));
+                message("`objects '{}'` lists what fits", as_it_is(pattern)));
   return out;
 }
 

@@ -78,7 +78,7 @@ Result<double> replay_speed(const Arguments& arguments) {
   if (!arguments.has("--speed")) return 1.0;
   const auto speed = parse_real(arguments.text("--speed"));
   if (!speed || *speed < 0.001 || *speed > 1000)
-    return fail(Errc::usage, formatted("'{}' is not a speed", arguments.text("--speed")),
+    return fail(Errc::usage, message("'{}' is not a speed", as_it_is(arguments.text("--speed"))),
                 "write 0.001..1000; 1 is as recorded");
   return *speed;
 }
@@ -115,7 +115,7 @@ std::string failure_text(const Context& context, const traffic::ReplayFailure& f
 /// What became of the SDO requests; exit code 1 where one was in vain.
 void tell_failures(Context& context, const traffic::ReplayRun& run) {
   if (run.answered_by_recording() > 0)
-    context.notices.push_back(formatted(
+    context.notices.push_back(message(
         "SDO requests answered only by the recording, not by a drive: {}; --master leaves such answers out",
         run.answered_by_recording()));
   const auto& failures = run.failures();
@@ -160,7 +160,7 @@ void remember_energised(Context& context, const traffic::ReplayPlan& plan,
       context.session->energised().insert(node);
     else
       context.notices.push_back(
-          formatted("node {} does not answer: whether the replay energises it is not known", node));
+          message("node {} does not answer: whether the replay energises it is not known", node_name(node)));
   }
 }
 
@@ -176,7 +176,7 @@ Result<void> send_recorded(Context& context, const traffic::ReplayPlan& plan,
     if (done.error().code != Errc::bus) motion::stop_left_energised(context);
     auto error = done.error();
     error.message =
-        formatted("{}; {} of {} frames were sent", error.message, replay.sent(), plan.frames.size());
+        message("{}; {} of {} frames were sent", error.message, replay.sent(), plan.frames.size());
     return fail(std::move(error));
   }
   answer.push_back({"sent", replay.sent()});
@@ -196,15 +196,14 @@ void tell_plan(Context& context, const traffic::ReplayPlan& plan, std::string_vi
   for (auto& notice : traffic::notices(file, plan.strays)) context.notices.push_back(std::move(notice));
   if (plan.extended > 0)
     context.notices.push_back(
-        plan.extended == 1
-            ? "1 frame with a 29-bit identifier is left out: these are not replayed"
-            : formatted("{} frames with 29-bit identifiers are left out: these are not replayed",
-                        plan.extended));
+        plan.extended == 1 ? "1 frame with a 29-bit identifier is left out: these are not replayed"
+                           : message("{} frames with 29-bit identifiers are left out: these are not replayed",
+                                     plan.extended));
   std::string dropped;
   for (const auto id : plan.dropped) append(dropped, formatted("0x{:03X}", id));
   if (!dropped.empty())
-    context.notices.push_back(formatted(
-        "left out, taken as TPDOs by CAN-ID only (not confirmed by a drive or family): {}", dropped));
+    context.notices.push_back(
+        message("left out, taken as TPDOs by CAN-ID only (not confirmed by a drive or family): {}", dropped));
 }
 
 std::string_view channel_of(const Arguments& arguments) {
@@ -223,8 +222,8 @@ Result<std::string> recording_of(const Arguments& arguments, const can::ReadOpti
   if (first.of_table && read.columns == nullptr)
     return fail(
         Errc::refused,
-        formatted("{}: frames of a table or log of another tool are sent only where its columns are named",
-                  file),
+        message("{}: frames of a table or log of another tool are sent only where its columns are named",
+                as_it_is(file)),
         "say what its columns are, `--columns time:s,id:hex,len,data:hex`; `decode` shows its frames");
   if (const auto one = traffic::check_channel(file, *text, channel_of(arguments), read); !one)
     return fail(one.error());
@@ -239,10 +238,10 @@ Result<void> check_plan(const traffic::ReplayPlan& plan, std::string_view file) 
   }
   if (plan.seen == 0) return traffic::no_frames(file, plan.strays);
   if (plan.frames.size() > 1 && plan.frames.back().time == Duration::zero())
-    return fail(Errc::usage, formatted("{} has no timestamps: its frames cannot be timed", file),
+    return fail(Errc::usage, message("{} has no timestamps: its frames cannot be timed", as_it_is(file)),
                 "`candump -L` and `candump -ta` write them, `monitor --trace FILE` too");
   if (plan.frames.empty())
-    return fail(Errc::negative, formatted("no frame of the {} in {} is sent", plan.seen, file),
+    return fail(Errc::negative, message("no frame of the {} in {} is sent", plan.seen, as_it_is(file)),
                 "--only and --master leave them out");
   return {};
 }

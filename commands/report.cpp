@@ -47,7 +47,7 @@ Result<Form> form_of(const std::filesystem::path& file) {
   const auto extension = lower(file.extension().string());
   if (extension == ".html" || extension == ".htm") return Form::html;
   if (extension == ".json") return Form::json;
-  return fail(Errc::usage, formatted("'{}' is not a report file name", file.string()),
+  return fail(Errc::usage, message("'{}' is not a report file name", as_it_is(file.string())),
               "use .html for people or .json for programs");
 }
 
@@ -56,7 +56,8 @@ Result<std::filesystem::path> file_of(const Arguments& arguments) {
   const auto output = arguments.text("--output");
   const bool named = arguments.has("--output") && !is_output_form(output);
   if (named && arguments.has("file"))
-    return fail(Errc::usage, formatted("'{}' and '{}': one file at a time", arguments.text("file"), output));
+    return fail(Errc::usage, message("'{}' and '{}': one file at a time", as_it_is(arguments.text("file")),
+                                     as_it_is(output)));
   if (!named && !arguments.has("file"))
     return fail(Errc::usage, "which file?", "`report FILE.html` for people, `report FILE.json` for programs");
   return std::filesystem::path(named ? output : arguments.text("file"));

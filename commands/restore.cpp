@@ -33,7 +33,7 @@ Result<void> keep_part(const Context& context, settings::Backup& backup, const s
   if (!*part) return {};
   std::erase_if(backup.entries, [&](const settings::Backup::Entry& entry) { return !(*part)(entry.object); });
   if (!backup.entries.empty()) return {};
-  return fail(Errc::usage, formatted("{} contains nothing of '{}'", file, only));
+  return fail(Errc::usage, message("{} contains nothing of '{}'", as_it_is(file), as_it_is(only)));
 }
 
 Result<Value> run_restore(Context& context, const Arguments& arguments) {

@@ -77,7 +77,7 @@ Result<report::Value> run_ring(Context& context, session::EtherCatNetwork& netwo
       nodes.push_back(node);
     else
       context.errors.push_back(drive_error(Errc::timeout, node, "there is no slave at this position",
-                                           formatted("slaves on the ring: {}", ring->count)));
+                                           message("slaves on the ring: {}", ring->count)));
   }
   for (auto& notice : show::ring_notices(*ring, nodes)) context.notices.push_back(std::move(notice));
   const auto conditions = conditions_of(*context.session, *ring, nodes);

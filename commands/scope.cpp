@@ -160,9 +160,9 @@ Result<std::vector<std::unique_ptr<pdo::ScopeMapping>>> map_objects(Context& con
     const auto mapped = out.back()->begin(arguments.all("object"), period->value_or(kScopePeriod));
     if (mapped) continue;
     if (mapped.error().code == Errc::interrupted) return fail(mapped.error());
-    context.notices.push_back(formatted("read by SDO, not mapped: {}{}",
-                                        pdo::reason_naming(node, mapped.error()),
-                                        mapped.error().hint.empty() ? "" : " (" + mapped.error().hint + ")"));
+    context.notices.push_back(message("read by SDO, not mapped: {}{}",
+                                      pdo::reason_naming(node, mapped.error()),
+                                      mapped.error().hint.empty() ? "" : " (" + mapped.error().hint + ")"));
   }
   return out;
 }

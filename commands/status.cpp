@@ -183,10 +183,11 @@ bool has_no_statusword(std::span<const Result<Bytes>> answers) {
 void tell_axes(Context& context, std::uint8_t node, std::span<const motion::OtherAxis> others,
                bool has_first) {
   if (!others.empty())
-    context.notices.push_back(
-        formatted("node {}: {}", node, motion::axes_text({others.begin(), others.end()}, has_first)));
+    context.notices.push_back(message("node {}: {}", node_name(node),
+                                      motion::axes_text({others.begin(), others.end()}, has_first)));
   else if (!has_first)
-    context.notices.push_back(formatted("node {} has no statusword: it is not a CiA 402 drive", node));
+    context.notices.push_back(
+        message("node {} has no statusword: it is not a CiA 402 drive", node_name(node)));
 }
 
 Record status_record(Context& context, std::uint8_t node, std::span<const Result<Bytes>> answers,

@@ -27,7 +27,7 @@ Result<ParameterGroup> group_of(const Arguments& arguments) {
   const auto word = arguments.has("group") ? arguments.text("group") : kGroups.front();
   for (std::size_t i = 0; i < kGroups.size(); ++i)
     if (kGroups[i] == word) return static_cast<ParameterGroup>(i + 1);
-  return fail(Errc::usage, formatted("'{}' is not a group of parameters", word),
+  return fail(Errc::usage, message("'{}' is not a group of parameters", as_it_is(word)),
               "use all, communication, application or vendor");
 }
 

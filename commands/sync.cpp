@@ -43,7 +43,7 @@ Result<void> check_none(const Context& context) {
   const auto* production = context.session->can()->sync();
   if (production == nullptr) return {};
   return fail(Errc::refused,
-              formatted("SYNC is already being produced, every {}", to_string(production->options.period)),
+              message("SYNC is already being produced, every {}", to_string(production->options.period)),
               "`sync stop` ends it");
 }
 
@@ -75,12 +75,13 @@ Result<canopen::SyncProducer::Options> sync_options(const Arguments& arguments) 
   if (!period) return fail(period.error());
   out.period = period->value_or(kSyncPeriod);
   if (out.period < kShortestPeriod)
-    return fail(Errc::usage, formatted("a period of {} is too short", to_string(out.period)),
+    return fail(Errc::usage, message("a period of {} is too short", to_string(out.period)),
                 "the minimum is 200us; drives need 1ms or more");
   if (!arguments.has("--counter")) return out;
   const auto counter = parse_digits(arguments.text("--counter"), 10);
   if (!counter || *counter < 2 || *counter > 240)
-    return fail(Errc::usage, formatted("'{}' is not a counter overflow value", arguments.text("--counter")),
+    return fail(Errc::usage,
+                message("'{}' is not a counter overflow value", as_it_is(arguments.text("--counter"))),
                 "write 2..240 (CiA 301, 1019h)");
   out.last_counter = static_cast<std::uint8_t>(*counter);
   return out;

@@ -78,8 +78,8 @@ class AllTests {
   /// Whether the last test leaves it to the motor to be moved; else it is told which one does not.
   bool may_go_on(std::string_view name) {
     if (results_.empty() || passed(results_.back())) return true;
-    context_->notices.push_back(
-        formatted("node {}: nothing was moved, because `{}` failed", request_->node, name));
+    context_->notices.push_back(message("node {}: nothing was moved, because `{}` failed",
+                                        node_name(request_->node), as_it_is(name)));
     return false;
   }
 
@@ -136,7 +136,7 @@ class AllTests {
 Result<void> check_left_out(const Arguments& arguments) {
   for (const auto* option : {"--repeat", "--spread"})
     if (arguments.has("--no-home") && arguments.has(option))
-      return fail(Errc::usage, formatted("{} is for `test home`, which --no-home skips", option),
+      return fail(Errc::usage, message("{} is for `test home`, which --no-home skips", option),
                   "leave one of them out");
   return {};
 }

@@ -48,9 +48,10 @@ Result<double> learning_speed(const Arguments& arguments) {
   if (unit != std::string::npos && unit + 3 == text.size()) text = text.substr(0, unit);
   const auto rpm = parse_real(text);
   if (rpm && std::abs(*rpm) >= motion::kLeastLearnRpm && std::abs(*rpm) <= motion::kMostLearnRpm) return *rpm;
-  return fail(Errc::usage,
-              formatted("--speed: '{}' is not 15rpm to 30rpm in either direction", arguments.text("--speed")),
-              "slower is too inaccurate, faster is not safe before the counts are known");
+  return fail(
+      Errc::usage,
+      message("--speed: '{}' is not 15rpm to 30rpm in either direction", as_it_is(arguments.text("--speed"))),
+      "slower is too inaccurate, faster is not safe before the counts are known");
 }
 
 Result<std::optional<double>> nameplate_of(const Arguments& arguments) {
@@ -59,7 +60,7 @@ Result<std::optional<double>> nameplate_of(const Arguments& arguments) {
   if (counts && !counts->negative && counts->magnitude > 0)
     return std::optional(static_cast<double>(counts->magnitude));
   return fail(Errc::usage,
-              formatted("--nameplate: '{}' is not a number of counts", arguments.text("--nameplate")),
+              message("--nameplate: '{}' is not a number of counts", as_it_is(arguments.text("--nameplate"))),
               "such as 131072 for 17 bits");
 }
 
@@ -91,7 +92,7 @@ std::string unmet(Context& context, std::uint8_t node) {
   return out;
 }
 
-tl::unexpected<Error> refused(std::uint8_t node, std::string message, std::string hint) {
+tl::unexpected<Error> refused(std::uint8_t node, Message message, Message hint) {
   return fail(drive_error(Errc::refused, node, std::move(message), std::move(hint)));
 }
 
@@ -104,8 +105,8 @@ Result<double> read_gear(Context& context, std::uint8_t node) {
   if (known) {
     const auto pending = motion::restart_note(*context.profile, *known->way);
     return refused(node,
-                   formatted("its parameters already give {} increments per revolution{}: nothing to learn",
-                             plain_number(known->value, 12), pending.empty() ? "" : " once they take effect"),
+                   message("its parameters already give {} increments per revolution{}: nothing to learn",
+                           plain_number(known->value, 12), pending.empty() ? "" : " once they take effect"),
                    "`units show` lists which" + (pending.empty() ? "" : "; " + pending));
   }
   const auto why = unmet(context, node);
@@ -119,9 +120,9 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
     const auto ways = rules.units.find(drive::Measure::increments_per_turn);
     const auto told = ways == rules.units.end() ? std::string() : show::ways_text(ways->second);
     return fail(Errc::refused,
-                told.empty() ? formatted("{} has no speed monitor to measure with", context.profile->family)
-                             : formatted("{} reports the counts per revolution itself: {}",
-                                         context.profile->family, told),
+                told.empty() ? message("{} has no speed monitor to measure with", context.profile->family)
+                             : message("{} reports the counts per revolution itself: {}",
+                                       context.profile->family, told),
                 told.empty() ? std::string(motion::kOtherWay) : "`units show` reads them");
   }
   const auto monitor = drive::resolve(context.profile, rules.learn.speed);
@@ -172,7 +173,7 @@ Result<void> keep(Context& context, std::uint8_t node, const motion::LearnReport
   auto written = motion::TurnFile(context, node).write(turn);
   if (written) return written;
   auto error = written.error();
-  error.message = formatted("the measured {} counts are not kept: {}", turn.counts, error.message);
+  error.message = message("the measured {} counts are not kept: {}", turn.counts, error.message);
   return fail(std::move(error));
 }
 

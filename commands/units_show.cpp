@@ -121,7 +121,7 @@ Result<Value> run_units_show(Context& context, const Arguments& arguments) {
     const auto known = motion::find_turn(context, node);
     if (!known.unused.empty())
       context.notices.push_back(
-          formatted("node {}: the kept counts per revolution are not used: {}", node, known.unused));
+          message("node {}: the kept counts per revolution are not used: {}", node_name(node), known.unused));
     for (const auto& [measure, name] : kMeasures)
       if (measure == Measure::increments_per_turn || context.profile->rules.units.count(measure) > 0)
         table.rows.push_back(row(context, node, measure, name, options->turn, known));

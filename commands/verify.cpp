@@ -27,7 +27,8 @@ Result<Value> run_verify(Context& context, const Arguments& arguments) {
     if (!read) return fail(read.error());
     if (read->family != context.profile->family)
       return fail(Errc::refused,
-                  formatted("{} is for {}, not for {}", name, read->family, context.profile->family),
+                  message("{} is for {}, not for {}", as_it_is(name), as_it_is(read->family),
+                          as_it_is(context.profile->family)),
                   "give the backup's family with -d if the drive really is one");
     backup = std::move(*read);
   }

@@ -21,7 +21,7 @@ constexpr Parameter kWitnessParameters[] = {
 Result<Value> run_witness(Context& context, const Arguments& arguments) {
   const std::filesystem::path path(arguments.text("file"));
   if (lower(path.extension().string()) != ".json")
-    return fail(Errc::usage, formatted("'{}': the file must end in .json", path.string()));
+    return fail(Errc::usage, message("'{}': the file must end in .json", as_it_is(path.string())));
   if (context.nodes.size() != 1) return fail(Errc::usage, "one file is of one node", "say -n 1");
   const auto possible = check_writable(path);
   if (!possible) return fail(possible.error());

@@ -111,8 +111,8 @@ bool CsvTable::has_columns(std::span<const std::string_view> needed, std::string
   for (const auto& each : columns) append(there, formatted("'{}'", each));
   for (const auto name : columns.empty() ? std::span<const std::string_view>() : needed) {
     if (column(name) < columns.size()) continue;
-    errors.push_back(file_error(file, 1, formatted("column '{}' is missing", name),
-                                formatted("the columns are {}", there)));
+    errors.push_back(file_error(file, 1, message("column '{}' is missing", as_it_is(name)),
+                                message("the columns are {}", there)));
     all = false;
   }
   return all;
@@ -123,7 +123,7 @@ CsvTable read_csv(std::string_view text, std::string_view file, std::vector<Erro
   CsvTable table;
   Splitter splitter(text, separator);
   std::vector<std::string> cells;
-  const auto wrong = [&](std::uint32_t line, std::string_view what) {
+  const auto wrong = [&](std::uint32_t line, const Message& what) {
     errors.push_back(file_error(file, line, what));
   };
   while (!splitter.at_end()) {
@@ -140,11 +140,11 @@ CsvTable read_csv(std::string_view text, std::string_view file, std::vector<Erro
       std::sort(sorted.begin(), sorted.end());
       const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
       if (twice != sorted.end() && rows == CsvRows::exact)
-        wrong(line, formatted("column '{}' appears twice", *twice));
+        wrong(line, message("column '{}' appears twice", as_it_is(*twice)));
       continue;
     }
     if (cells.size() != table.columns.size() && rows == CsvRows::exact) {
-      wrong(line, formatted("{} cells, but the header names {} columns", cells.size(), table.columns.size()));
+      wrong(line, message("{} cells, but the header names {} columns", cells.size(), table.columns.size()));
       continue;
     }
     table.rows.push_back({std::move(cells), line});

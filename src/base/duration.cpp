@@ -37,9 +37,10 @@ Result<Duration> read_duration(std::string_view text) {
   if (const auto time = parse_duration(text)) return *time;
   text = trim(text);
   if (parse_real(text) || parse_integer(text))
-    return fail(Errc::usage, formatted("'{}': a time needs its unit", text),
-                formatted("write {0}s or {0}ms", text));
-  return fail(Errc::usage, formatted("'{}' is not a time", text), "write 500ms, 2s or 1min; at most one day");
+    return fail(Errc::usage, message("'{}': a time needs its unit", as_it_is(text)),
+                message("write {0}s or {0}ms", text));
+  return fail(Errc::usage, message("'{}' is not a time", as_it_is(text)),
+              "write 500ms, 2s or 1min; at most one day");
 }
 
 std::string to_string(Duration duration) {

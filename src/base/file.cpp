@@ -60,7 +60,7 @@ std::string advice(int error) {
 }
 
 tl::unexpected<Error> cannot_write(const fs::path& path, int error) {
-  return fail(Errc::file, formatted("cannot write {}: {}", path.string(), why(error)), advice(error));
+  return fail(Errc::file, message("cannot write {}: {}", as_it_is(path.string()), why(error)), advice(error));
 }
 
 /// Where a file is written to.
@@ -103,12 +103,13 @@ Result<Target> target_of(const fs::path& path) {
   if (::stat(out.path.c_str(), &info) != 0) {
     if (errno != ENOENT) return cannot_write(path, errno);
     if (!out.path.has_filename())
-      return fail(Errc::file, formatted("cannot write {}: it is a folder", path.string()),
+      return fail(Errc::file, message("cannot write {}: it is a folder", as_it_is(path.string())),
                   "name a file in it");
     return out;
   }
   if (S_ISDIR(info.st_mode))
-    return fail(Errc::file, formatted("cannot write {}: it is a folder", path.string()), "name a file in it");
+    return fail(Errc::file, message("cannot write {}: it is a folder", as_it_is(path.string())),
+                "name a file in it");
   if (S_ISREG(info.st_mode))
     out.before = info;
   else
@@ -249,23 +250,23 @@ Result<std::string> read_file(const std::filesystem::path& path, std::uintmax_t 
   const auto is_regular = [&](int error) { return error != 0 || S_ISREG(found.st_mode); };
   // Before it is opened, and behind that: another may stand there now.
   if (regular_only && !is_regular(::stat(path.c_str(), &found)))
-    return fail(Errc::file, formatted("{} is no regular file", path.string()));
+    return fail(Errc::file, message("{} is no regular file", as_it_is(path.string())));
   const OpenFile file(
       ::open(path.c_str(), O_RDONLY | O_CLOEXEC | (regular_only ? O_NONBLOCK | O_NOCTTY : 0)));
   if (file.descriptor < 0)
-    return fail(Errc::file, formatted("cannot open {}: {}", path.string(), why(errno)));
+    return fail(Errc::file, message("cannot open {}: {}", as_it_is(path.string()), why(errno)));
   if (regular_only && !is_regular(::fstat(file.descriptor, &found)))
-    return fail(Errc::file, formatted("{} is no regular file", path.string()));
+    return fail(Errc::file, message("{} is no regular file", as_it_is(path.string())));
   if (regular_only) max_bytes = std::min(max_bytes, kMostUnasked);
   std::string content;
   char chunk[65536];
   for (;;) {
     const auto got = ::read(file.descriptor, chunk, sizeof chunk);
-    if (got < 0) return fail(Errc::file, formatted("cannot read {}: {}", path.string(), why(errno)));
+    if (got < 0) return fail(Errc::file, message("cannot read {}: {}", as_it_is(path.string()), why(errno)));
     if (got == 0) return content;
     content.append(chunk, static_cast<std::size_t>(got));
     if (content.size() > max_bytes)
-      return fail(Errc::file, formatted("{} is larger than {} bytes", path.string(), max_bytes));
+      return fail(Errc::file, message("{} is larger than {} bytes", as_it_is(path.string()), max_bytes));
   }
 }
 
@@ -289,7 +290,7 @@ Result<void> write_file_atomically(const std::filesystem::path& path, std::strin
   const auto target = target_of(path);
   if (!target) return fail(target.error());
   if (target->kind != Target::Kind::regular && RegularFilesOnly::hold())
-    return fail(Errc::file, formatted("{} is no regular file", path.string()));
+    return fail(Errc::file, message("{} is no regular file", as_it_is(path.string())));
   if (target->kind != Target::Kind::regular) return write_through(path, *target, content);
   Temporary file(*target);
   file.fill(content);

@@ -33,16 +33,17 @@ Result<std::optional<FileLock>> FileLock::take(const std::filesystem::path& path
     const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (fd < 0 && (errno == EACCES || errno == EROFS)) return std::optional(FileLock({}, -1));
     if (fd < 0)
-      return fail(Errc::file,
-                  formatted("cannot open {}: {}", path.string(), std::generic_category().message(errno)),
-                  "choose an existing folder you may write to");
+      return fail(
+          Errc::file,
+          message("cannot open {}: {}", as_it_is(path.string()), std::generic_category().message(errno)),
+          "choose an existing folder you may write to");
     if (::flock(fd, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
       ::close(fd);
       if (error == EINTR) continue;
       if (error == EWOULDBLOCK) return std::optional<FileLock>();
-      return fail(Errc::file,
-                  formatted("cannot lock {}: {}", path.string(), std::generic_category().message(error)));
+      return fail(Errc::file, message("cannot lock {}: {}", as_it_is(path.string()),
+                                      std::generic_category().message(error)));
     }
     if (is_there(path, fd)) {
       say_holder(fd, holder);

@@ -65,17 +65,17 @@ std::string writers(const fs::path& path, const struct stat& info) {
                           : formatted("the group {}", group->gr_name);
 }
 
-tl::unexpected<Error> foreign(const fs::path& path, uid_t owner, std::string_view way) {
-  return fail(Errc::refused, formatted("{} belongs to {}, not to you", path.string(), user_name(owner)),
-              std::string(way));
+tl::unexpected<Error> foreign(const fs::path& path, uid_t owner, const Message& way) {
+  return fail(Errc::refused,
+              message("{} belongs to {}, not to you", as_it_is(path.string()), user_name(owner)), way);
 }
 
-tl::unexpected<Error> writable(const fs::path& path, const std::string& by, std::string_view way) {
-  return fail(Errc::refused, formatted("{} can be changed by {}", path.string(), by), std::string(way));
+tl::unexpected<Error> writable(const fs::path& path, const std::string& by, const Message& way) {
+  return fail(Errc::refused, message("{} can be changed by {}", as_it_is(path.string()), by), way);
 }
 
 tl::unexpected<Error> unknown(const fs::path& path) {
-  return fail(Errc::file, formatted("{}: {}", path.string(), std::generic_category().message(errno)));
+  return fail(Errc::file, message("{}: {}", as_it_is(path.string()), std::generic_category().message(errno)));
 }
 
 fs::path folder_of(const fs::path& file) {
@@ -85,7 +85,7 @@ fs::path folder_of(const fs::path& file) {
 
 }  // namespace
 
-Result<void> check_found_file(const fs::path& file, std::string_view way, std::optional<uid_t> also) {
+Result<void> check_found_file(const fs::path& file, const Message& way, std::optional<uid_t> also) {
   const auto caller = sudo_user();
   const auto is_trusted = [&](uid_t owner) {
     return owner == ::geteuid() || owner == kRoot || owner == caller || owner == also;
@@ -125,8 +125,8 @@ Result<void> check_links(const fs::path& path) {
     const bool own = info.st_uid == ::geteuid() || info.st_uid == ::getuid() || info.st_uid == kRoot;
     if (!own && info.st_uid != caller)
       return fail(Errc::refused,
-                  formatted("cannot write {}: {} is a link of {}", path.string(), at.string(),
-                            user_name(info.st_uid)),
+                  message("cannot write {}: {} is a link of {}", as_it_is(path.string()),
+                          as_it_is(at.string()), user_name(info.st_uid)),
                   "name the file that is to be written");
     std::error_code error;
     const auto next = fs::read_symlink(at, error);

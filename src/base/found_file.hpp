@@ -18,7 +18,7 @@ namespace servoctl {
 /// to write to it, and to its folder where that has no sticky bit. A group may write only if it is the
 /// owner's private group: same name as the user, no other member, and no access control list. Errc::refused
 /// with who may write, and `way` as the hint; Errc::file when the file cannot be looked at.
-Result<void> check_found_file(const std::filesystem::path& file, std::string_view way,
+Result<void> check_found_file(const std::filesystem::path& file, const Message& way,
                               std::optional<uid_t> also = std::nullopt);
 
 /// The same of a folder in which servoctl keeps what it remembers: it must belong to this user alone, also

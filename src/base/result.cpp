@@ -1,6 +1,6 @@
 #include "base/result.hpp"
 
-#include "base/format.hpp"
+#include <string>
 
 namespace servoctl {
 
@@ -36,7 +36,14 @@ std::string_view name(Errc code) {
   return "bug";
 }
 
-Error make_error(Errc code, std::string message, std::string hint) {
+namespace {
+
+constexpr const char* kOfNode = "node {}: {}";
+constexpr const char* kOfObject = "node {}, object {}: {}";
+
+}  // namespace
+
+Error make_error(Errc code, Message message, Message hint) {
   Error error;
   error.code = code;
   error.message = std::move(message);
@@ -44,29 +51,38 @@ Error make_error(Errc code, std::string message, std::string hint) {
   return error;
 }
 
-Error drive_error(Errc code, std::uint8_t node, std::string_view what, std::string hint) {
-  auto error = make_error(code, formatted("node {}: {}", node, what), std::move(hint));
+Error drive_error(Errc code, std::uint8_t node, const Message& what, Message hint) {
+  auto error = make_error(code, Message(kOfNode, {node_name(node), Boxed<Message>(what)}), std::move(hint));
   error.node = node;
   return error;
 }
 
-Error drive_error(Errc code, std::uint8_t node, ObjectAddress object, std::string_view what,
-                  std::string hint) {
-  auto error =
-      make_error(code, formatted("node {}, object {}: {}", node, to_string(object), what), std::move(hint));
+Error drive_error(Errc code, std::uint8_t node, ObjectAddress object, const Message& what, Message hint) {
+  auto error = make_error(
+      code, Message(kOfObject, {node_name(node), Verbatim{to_string(object)}, Boxed<Message>(what)}),
+      std::move(hint));
   error.node = node;
   error.object = object;
   return error;
 }
 
-Error file_error(std::string_view file, std::uint32_t line, std::string_view what, std::string hint) {
-  auto error = make_error(Errc::file, formatted("{}:{}: {}", file, line, what), std::move(hint));
+Message what_happened(const Error& error) {
+  const auto& message = error.message;
+  if (message.literal() != kOfNode && message.literal() != kOfObject) return message;
+  const auto* what = std::get_if<Boxed<Message>>(&message.arguments().back());
+  return what == nullptr ? message : *what->get();
+}
+
+Error file_error(std::string_view file, std::uint32_t line, const Message& what, Message hint) {
+  auto error =
+      make_error(Errc::file, message("{}:{}: {}", Verbatim{std::string(file)}, line, what), std::move(hint));
   error.line = line;
   return error;
 }
 
-Error file_error(std::string_view file, std::uint32_t line, std::uint32_t column, std::string_view what) {
-  auto error = make_error(Errc::file, formatted("{}:{}:{}: {}", file, line, column, what));
+Error file_error(std::string_view file, std::uint32_t line, std::uint32_t column, const Message& what) {
+  auto error =
+      make_error(Errc::file, message("{}:{}:{}: {}", Verbatim{std::string(file)}, line, column, what));
   error.line = line;
   return error;
 }

@@ -7,6 +7,7 @@
 #include <tl/expected.hpp>
 #include <utility>
 
+#include "base/message.hpp"
 #include "base/object_address.hpp"
 
 namespace servoctl {
@@ -36,8 +37,8 @@ std::string_view name(Errc code);
 /// A failure, told in full: what happened, to which node and object, and what to do next.
 struct Error {
   Errc code = Errc::bug;
-  std::string message;                      ///< What happened: one sentence without a full stop.
-  std::string hint;                         ///< What to do next; empty when there is nothing to say.
+  Message message;                          ///< What happened: one sentence without a full stop.
+  Message hint;                             ///< What to do next; empty when there is nothing to say.
   std::optional<std::uint8_t> node;         ///< 1..127 when one node is concerned.
   std::optional<ObjectAddress> object;      ///< Set when one object is concerned.
   std::optional<std::uint32_t> abort_code;  ///< Set only with Errc::sdo_abort (CiA 301, 7.2.4.3.17).
@@ -49,24 +50,26 @@ template <class T>
 using Result = tl::expected<T, Error>;
 
 /// An error that concerns no node, object or line.
-Error make_error(Errc code, std::string message, std::string hint = {});
+Error make_error(Errc code, Message message, Message hint = {});
 
 /// An error of one node: `node 3: what`; or of one of its objects: `node 3, object 0x6040:0: what`.
-Error drive_error(Errc code, std::uint8_t node, std::string_view what, std::string hint = {});
-Error drive_error(Errc code, std::uint8_t node, ObjectAddress object, std::string_view what,
-                  std::string hint = {});
+Error drive_error(Errc code, std::uint8_t node, const Message& what, Message hint = {});
+Error drive_error(Errc code, std::uint8_t node, ObjectAddress object, const Message& what, Message hint = {});
+
+/// What the message of an error of drive_error() says, without the node and the object.
+Message what_happened(const Error& error);
 
 /// Errc::file in a line of a file: `gain.csv:3: what`, or with the column, where that is known (from 1):
 /// `gain.toml:3:7: what`.
-Error file_error(std::string_view file, std::uint32_t line, std::string_view what, std::string hint = {});
-Error file_error(std::string_view file, std::uint32_t line, std::uint32_t column, std::string_view what);
+Error file_error(std::string_view file, std::uint32_t line, const Message& what, Message hint = {});
+Error file_error(std::string_view file, std::uint32_t line, std::uint32_t column, const Message& what);
 
 /// Ends a function of Result with an error, a new one or one that is handed on: `return fail(read.error());`.
 [[nodiscard]] inline tl::unexpected<Error> fail(Error error) {
   return tl::unexpected<Error>(std::move(error));
 }
 
-[[nodiscard]] inline tl::unexpected<Error> fail(Errc code, std::string message, std::string hint = {}) {
+[[nodiscard]] inline tl::unexpected<Error> fail(Errc code, Message message, Message hint = {}) {
   return fail(make_error(code, std::move(message), std::move(hint)));
 }
 

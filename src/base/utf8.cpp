@@ -99,6 +99,16 @@ bool has_chinese(std::string_view text) {
   return std::any_of(text.begin(), text.end(), [](char c) { return c >= '\xE3' && c <= '\xE9'; });
 }
 
+bool begins_in_chinese(std::string_view text) {
+  constexpr std::size_t kBytes = 3;
+  return text.size() >= kBytes && text.front() >= '\xE3' && text.front() <= '\xEF';
+}
+
+bool ends_in_chinese(std::string_view text) {
+  constexpr std::size_t kBytes = 3;
+  return text.size() >= kBytes && begins_in_chinese(text.substr(text.size() - kBytes));
+}
+
 std::size_t columns(char32_t c) {
   if (is_in(kCombining, c)) return 0;
   return is_in(kWide, c) ? 2 : 1;

@@ -26,6 +26,10 @@ bool is_utf8(std::string_view text);
 /// Whether a character of the text is Chinese, or one of the marks of Chinese text: U+3000 to U+9FFF.
 bool has_chinese(std::string_view text);
 
+/// Whether the first, or the last, character is one of these; `…` is none.
+bool begins_in_chinese(std::string_view text);
+bool ends_in_chinese(std::string_view text);
+
 /// Columns the character takes on a terminal: two for East Asian wide ones, none for combining ones.
 std::size_t columns(char32_t c);
 

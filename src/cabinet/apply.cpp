@@ -81,7 +81,7 @@ class Applying {
       if (!why) continue;
       auto error = of_axis(*run.look->axis, std::move(*why));
       error.hint =
-          formatted("--all-or-nothing: nothing was written{}{}", error.hint.empty() ? "" : "; ", error.hint);
+          message("--all-or-nothing: nothing was written{}{}", error.hint.empty() ? "" : "; ", error.hint);
       return fail(std::move(error));
     }
     return {};
@@ -96,8 +96,7 @@ class Applying {
         return drive_error(Errc::refused, node, "it is energised: its settings cannot be changed now",
                            "`disable` de-energises it; make sure that the load is held");
       if (need.kind == AxisNeed::Kind::password && !options_->unlock && has_password(*run.station.profile))
-        return drive_error(Errc::refused, node,
-                           formatted("its password locks {}", fmt::join(need.names, ", ")),
+        return drive_error(Errc::refused, node, message("its password locks {}", fmt::join(need.names, ", ")),
                            "add --unlock, which gives it and takes it back after");
     }
     return std::nullopt;
@@ -262,9 +261,9 @@ class Applying {
     const auto all = names.size();
     names.resize(std::min(all, kMostNamed));
     desk_->notices.push_back(
-        formatted("axis {}: whether a {} keeps {}{} is not stated: `cabinet plan` after a power cycle tells",
-                  run.look->axis->name, run.look->axis->family, fmt::join(names, ", "),
-                  all > kMostNamed ? formatted(" and {} more", all - kMostNamed) : std::string()));
+        message("axis {}: whether a {} keeps {}{} is not stated: `cabinet plan` after a power cycle tells",
+                run.look->axis->name, run.look->axis->family, fmt::join(names, ", "),
+                all > kMostNamed ? message(" and {} more", all - kMostNamed) : std::string()));
   }
 
   Value answer() const { return desk_->dry_run ? frames() : apply_table(runs_, options_->keep); }

@@ -11,8 +11,7 @@ namespace {
 
 using session::FamilyVerdict;
 
-tl::unexpected<Error> other_drive(const Axis& axis, ObjectAddress object, const std::string& what,
-                                  std::string hint) {
+tl::unexpected<Error> other_drive(const Axis& axis, ObjectAddress object, const Message& what, Message hint) {
   return fail(drive_error(Errc::refused, axis.node, object, what, std::move(hint)));
 }
 
@@ -23,11 +22,11 @@ Result<void> hold_family(show::Desk& desk, const Axis& axis, std::span<const dri
   const auto verdict = session::judge_family(*identity, *desk.profile, families);
   if (verdict.kind == FamilyVerdict::Kind::contradicted)
     return other_drive(axis, verdict.object.value_or(objects::kDeviceType),
-                       formatted("not a {}: {}", desk.profile->family, verdict.why),
+                       message("not a {}: {}", desk.profile->family, verdict.why),
                        "is another drive at this node, or is `family` wrong? `scan` shows who is there");
   if (verdict.kind == FamilyVerdict::Kind::unproven)
-    desk.notices.push_back(formatted("node {}: nothing proves that it is a {}: {}", axis.node,
-                                     desk.profile->family, verdict.why));
+    desk.notices.push_back(message("node {}: nothing proves that it is a {}: {}", node_name(axis.node),
+                                   desk.profile->family, verdict.why));
   session::be_wary_of_family(*desk.session, axis.node, *desk.profile);
   if (const auto heard = desk.session->listen(); !heard) return heard;
   return session::refuse_duplicate(*desk.session, axis.node);
@@ -64,11 +63,11 @@ Result<void> hold_serial(const Axis& axis, const session::Identity& identity) {
   if (identity.serial.value_or(0) == 0)
     return other_drive(
         axis, objects::kSerialNumber,
-        formatted("the drive tells no serial number, and the file says {}", serial_text(*axis.serial)),
+        message("the drive tells no serial number, and the file says {}", serial_text(*axis.serial)),
         "remove `serial` where its drives tell none; was the drive replaced? `info` shows what it is");
   return other_drive(axis, objects::kSerialNumber,
-                     formatted("the drive has the serial number {}, and the file says {}",
-                               serial_text(*identity.serial), serial_text(*axis.serial)),
+                     message("the drive has the serial number {}, and the file says {}",
+                             serial_text(*identity.serial), serial_text(*axis.serial)),
                      "was the drive replaced, or swapped with another? `info` shows what it is");
 }
 

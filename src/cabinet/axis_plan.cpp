@@ -177,9 +177,9 @@ class AxisPlanner {
     const auto state = session::ask_state(*desk_->session, axis_->node);
     if (!state) return fail(state.error());
     if (*state != session::NodeState::operational) return false;
-    desk_->notices.push_back(formatted(
+    desk_->notices.push_back(message(
         "node {} is in OP: its PDOs are those of the process data, and not compared with the factory's",
-        axis_->node));
+        node_name(axis_->node)));
     return true;
   }
 
@@ -227,15 +227,16 @@ class AxisPlanner {
     const auto said = drive::bitrate_text(*rate);
     desk_->notices.push_back(
         runs
-            ? formatted(
+            ? message(
                   "axis {}: {} is {}, the file says {}, and bus {} runs at {}: no bitrate is written; correct "
                   "the file, or the bus (`bus status`)",
-                  axis_->name, profile.rules.nmt.bitrate, stored, said, bus->name, drive::bitrate_text(*runs))
-            : formatted(
+                  as_it_is(axis_->name), profile.rules.nmt.bitrate, stored, said, bus->name,
+                  drive::bitrate_text(*runs))
+            : message(
                   "axis {}: {} is {}, the file says {}, and nothing tells at which bitrate bus {} runs: none is "
                   "written; where it is that of the file, `address --bitrate {} -n {}` sets it",
-                  axis_->name, profile.rules.nmt.bitrate, stored, said, bus->name, bus->bitrate,
-                  axis_->name));
+                  as_it_is(axis_->name), profile.rules.nmt.bitrate, stored, said, bus->name,
+                  as_it_is(bus->bitrate), as_it_is(axis_->name)));
     return {};
   }
 

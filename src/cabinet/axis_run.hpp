@@ -33,7 +33,7 @@ struct AxisRun {
   AxisEnd end = AxisEnd::untouched;
   report::Value frames;  ///< With --dry-run.
   std::vector<Error> errors;
-  std::vector<std::string> notices;
+  std::vector<Message> notices;
   std::vector<ObjectAddress> in_flash;  ///< As in session::RestoreOutcome.
 
   /// Whether every value is as wanted.

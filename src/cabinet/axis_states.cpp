@@ -35,8 +35,8 @@ std::string network_of(session::Session& session, std::uint8_t node) {
 /// As people of the cabinet call it.
 Error named(const Axis& axis, Error error) {
   const show::AxisNames names({{axis.node, axis.name}});
-  error.message = names.in(error.message);
-  error.hint = names.in(error.hint);
+  names.put_into(error.message);
+  names.put_into(error.hint);
   return error;
 }
 

@@ -44,11 +44,12 @@ Result<std::vector<PdoRecipe>> recipes_of(const drive::Profile& profile, const C
   if (found != presets.end()) return found->pdos;
   std::vector<std::string> names;
   for (const auto& preset : presets) names.push_back(preset.name);
-  return at_place(
-      cabinet, axis, axis.pdos.at,
-      make_error(Errc::usage,
-                 formatted("the manual of {} has no mapping for '{}'", profile.family, axis.pdos.preset),
-                 names.empty() ? "it has none: write them as tables" : "use " + one_of(names)));
+  return at_place(cabinet, axis, axis.pdos.at,
+                  make_error(Errc::usage,
+                             message("the manual of {} has no mapping for '{}'", as_it_is(profile.family),
+                                     as_it_is(axis.pdos.preset)),
+                             names.empty() ? Message("it has none: write them as tables")
+                                           : message("use {}", one_of(names))));
 }
 
 /// What is written for one axis, in the making.
@@ -122,9 +123,9 @@ class Wanted {
     else if (!meaning.size_known)
       meaning.type_known = false;
     if (!meaning.type_known || (meaning.measure && drive::needs_bridge(meaning, text))) {
-      desk_->notices.push_back(
-          formatted("axis {}: {} = {} is not compared: only its drive tells what that is", axis_->name,
-                    setting.name, setting.value));
+      desk_->notices.push_back(message("axis {}: {} = {} is not compared: only its drive tells what that is",
+                                       as_it_is(axis_->name), as_it_is(setting.name),
+                                       as_it_is(setting.value)));
       return {};
     }
     const auto value = drive::parse_quantity(meaning, text);
@@ -158,7 +159,7 @@ class Wanted {
     const auto& profile = *desk_->profile;
     if (profile.dictionary.find(objects::kProducerHeartbeat) == nullptr)
       return at_place(*cabinet_, *axis_, axis_->heartbeat_at,
-                      make_error(Errc::file, formatted("{} has no heartbeat (1017h)", profile.family),
+                      make_error(Errc::file, message("{} has no heartbeat (1017h)", as_it_is(profile.family)),
                                  "leave `heartbeat` out"));
     const auto milliseconds = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat);
     return add_parameter(
@@ -175,17 +176,17 @@ class Wanted {
   Result<void> add(ObjectAddress object, const Bytes& data, Place place) {
     const auto target = drive::target_at(desk_->profile, object);
     const auto name = settings::name_of(target);
-    const auto refuse = [&](std::string why, std::string hint) {
+    const auto refuse = [&](Message why, Message hint) {
       return at_place(*cabinet_, *axis_, place, make_error(Errc::file, std::move(why), std::move(hint)));
     };
     if (settings::is_address(desk_->profile, object))
-      return refuse(formatted("{} is node-ID or bitrate of the drive", name),
+      return refuse(message("{} is node-ID or bitrate of the drive", name),
                     "`node` and `bitrate` say them; they are not written as parameters");
     const auto first = std::find_if(out_.entries.begin(), out_.entries.end(),
                                     [&](const auto& entry) { return entry.object == object; });
     if (first != out_.entries.end()) {
       if (*first->bytes == data) return {};
-      return refuse(formatted("{} has another value in line {}", name, first->line), "remove one of them");
+      return refuse(message("{} has another value in line {}", name, first->line), "remove one of them");
     }
     add_entry(object, data, place);
     return {};

@@ -53,7 +53,8 @@ Result<std::vector<const Axis*>> Cabinet::select(std::string_view list) const {
     if (!all && !knows(word)) {
       const auto all_names = names();
       const auto nearest = did_you_mean(word, all_names);
-      return fail(Errc::usage, formatted("{} has no axis '{}'", file.filename().string(), word),
+      return fail(Errc::usage,
+                  message("{} has no axis '{}'", as_it_is(file.filename().string()), as_it_is(word)),
                   nearest.empty() ? "its axes: " + one_of(all_names) : nearest);
     }
     for (const auto& one : axes)
@@ -63,7 +64,7 @@ Result<std::vector<const Axis*>> Cabinet::select(std::string_view list) const {
   for (const auto& one : axes)
     if (chosen.count(&one) != 0) out.push_back(&one);
   if (out.empty())
-    return fail(Errc::usage, formatted("'{}' names no axis", list), "its axes: " + one_of(names()));
+    return fail(Errc::usage, message("'{}' names no axis", as_it_is(list)), "its axes: " + one_of(names()));
   return out;
 }
 
@@ -77,10 +78,9 @@ std::filesystem::path find_cabinet(const std::filesystem::path& folder) {
   return {};
 }
 
-Error cabinet_error(const Cabinet& cabinet, const Axis& axis, Place at, std::string_view what,
-                    std::string hint) {
-  auto error =
-      file_error(cabinet.file.string(), at.line, at.column, formatted("axis {}: {}", axis.name, what));
+Error cabinet_error(const Cabinet& cabinet, const Axis& axis, Place at, const Message& what, Message hint) {
+  auto error = file_error(cabinet.file.string(), at.line, at.column,
+                          message("axis {}: {}", as_it_is(axis.name), what));
   error.hint = std::move(hint);
   return error;
 }

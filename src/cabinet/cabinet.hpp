@@ -104,7 +104,7 @@ Result<Cabinet> read_cabinet(const std::filesystem::path& file);
 std::filesystem::path find_cabinet(const std::filesystem::path& folder);
 
 /// The error of something that stands in the file at this place: `cabinet.toml:12:9: axis feeder: what`.
-Error cabinet_error(const Cabinet& cabinet, const Axis& axis, Place at, std::string_view what,
-                    std::string hint = {});
+Error cabinet_error(const Cabinet& cabinet, const Axis& axis, Place at, const Message& what,
+                    Message hint = {});
 
 }  // namespace servoctl::cabinet

@@ -26,7 +26,7 @@ struct SavedAxis {
   Result<std::string> text;
   std::size_t values = 0;
   std::size_t left_out = 0;
-  std::vector<std::string> notices = {};
+  std::vector<Message> notices = {};
 };
 
 Result<settings::Backup> read_axis(show::Desk& desk, const Axis& axis,
@@ -74,13 +74,13 @@ class FolderInTheMaking {
   Result<void> make() const {
     std::error_code error;
     fs::create_directories(path_, error);
-    if (error) return fail(Errc::file, formatted("{}: {}", path_.string(), error.message()));
+    if (error) return fail(Errc::file, message("{}: {}", as_it_is(path_.string()), error.message()));
     return {};
   }
   Result<void> name(const fs::path& name) {
     std::error_code error;
     fs::rename(path_, name, error);
-    if (error) return fail(Errc::file, formatted("{}: {}", name.string(), error.message()));
+    if (error) return fail(Errc::file, message("{}: {}", as_it_is(name.string()), error.message()));
     path_.clear();
     return {};
   }

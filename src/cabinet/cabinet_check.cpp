@@ -31,7 +31,7 @@ class AxisCheck {
   }
 
   /// What is no fault, and worth a look.
-  std::vector<std::string> take_notices() { return std::move(notices_); }
+  std::vector<Message> take_notices() { return std::move(notices_); }
 
   std::vector<Error> run() {
     for (const auto& setting : axis_->parameters) check_setting(setting);
@@ -48,21 +48,24 @@ class AxisCheck {
     if (target->entry == nullptr && !profile_->is_generic())
       notices_.push_back(
           cabinet_error(*cabinet_, *axis_, setting.at,
-                        formatted("{} is not in the data of {}: its size and limits are asked of the drive",
-                                  setting.name, profile_->family))
+                        message("{} is not in the data of {}: its size and limits are asked of the drive",
+                                as_it_is(setting.name), as_it_is(profile_->family)))
               .message);
     const auto twice = places_.emplace(target->address, &setting);
     if (!twice.second)
-      return add(setting.at,
-                 make_error(Errc::file, formatted("{} is {} as well, in line {}", setting.name,
-                                                  twice.first->second->name, twice.first->second->at.line)));
+      return add(
+          setting.at,
+          make_error(Errc::file, message("{} is {} as well, in line {}", as_it_is(setting.name),
+                                         as_it_is(twice.first->second->name), twice.first->second->at.line)));
     if (settings::is_address(profile_, target->address))
-      return add(setting.at,
-                 make_error(Errc::file, formatted("{} is node-ID or bitrate of the drive", setting.name),
-                            "`node` and `bitrate` say them; they are not written as parameters"));
+      return add(
+          setting.at,
+          make_error(Errc::file, message("{} is node-ID or bitrate of the drive", as_it_is(setting.name)),
+                     "`node` and `bitrate` say them; they are not written as parameters"));
     if (const auto reason = no_setting(*target); !reason.empty())
-      return add(setting.at, make_error(Errc::file, formatted("{} is no setting: {}", setting.name, reason),
-                                        "`param explain` tells more"));
+      return add(setting.at,
+                 make_error(Errc::file, message("{} is no setting: {}", as_it_is(setting.name), reason),
+                            "`param explain` tells more"));
     if (const auto fits =
             settings::check_change(desk_, axis_->node, *target, in_units_of_motor(*axis_, setting.value), {});
         !fits)
@@ -79,8 +82,8 @@ class AxisCheck {
   }
 
   static Error with_name(const Setting& setting, Error error) {
-    if (error.message.find(setting.name) == std::string::npos)
-      error.message = formatted("{}: {}", setting.name, error.message);
+    if (error.message.text().find(setting.name) == std::string::npos)
+      error.message = message("{}: {}", as_it_is(setting.name), error.message);
     return error;
   }
 
@@ -89,13 +92,13 @@ class AxisCheck {
     const auto target = drive::target_at(profile_, kHeartbeatTime);
     if (target.entry == nullptr)
       return add(axis_->heartbeat_at,
-                 make_error(Errc::file, formatted("{} has no heartbeat (1017h)", profile_->family)));
+                 make_error(Errc::file, message("{} has no heartbeat (1017h)", as_it_is(profile_->family))));
     const auto ms = std::chrono::duration_cast<std::chrono::milliseconds>(*axis_->heartbeat).count();
     if (const auto fits = settings::check_change(desk_, axis_->node, target, std::to_string(ms), {}); !fits)
       add(axis_->heartbeat_at, fits.error());
     if (const auto twice = places_.find(kHeartbeatTime); twice != places_.end())
-      add(twice->second->at, make_error(Errc::file, formatted("'heartbeat' in line {} says 1017h as well",
-                                                              axis_->heartbeat_at.line)));
+      add(twice->second->at, make_error(Errc::file, message("'heartbeat' in line {} says 1017h as well",
+                                                            axis_->heartbeat_at.line)));
   }
 
   void check_pdos() {
@@ -105,9 +108,10 @@ class AxisCheck {
       for (const auto& preset : profile_->rules.pdo.presets) names.push_back(preset.name);
       if (std::none_of(names.begin(), names.end(),
                        [&](const auto& name) { return equals_nocase(name, pdos.preset); }))
-        add(pdos.at,
-            make_error(Errc::file, formatted("{} has no PDO preset '{}'", profile_->family, pdos.preset),
-                       names.empty() ? "it has none" : formatted("it has {}", one_of(names))));
+        add(pdos.at, make_error(Errc::file,
+                                message("{} has no PDO preset '{}'", as_it_is(profile_->family),
+                                        as_it_is(pdos.preset)),
+                                names.empty() ? "it has none" : message("it has {}", one_of(names))));
     }
     if (pdos.file.empty()) return check_recipes(pdos.recipes);
     const auto file = pdo::read_pdo_source(*profile_, cabinet_->file.parent_path() / pdos.file);
@@ -126,7 +130,7 @@ class AxisCheck {
       for (const auto& word : recipe.map.value_or(std::vector<std::string>()))
         if (const auto entry = pdo::parse_mapped(*profile_, word); !entry) {
           auto error = entry.error();
-          error.message = formatted("{}: {}", recipe.pdo, error.message);
+          error.message = message("{}: {}", as_it_is(recipe.pdo), error.message);
           add(at, error);
         }
     }
@@ -135,12 +139,15 @@ class AxisCheck {
   Result<void> check_pdo_name(const std::string& name) const {
     const auto pdo = canopen::parse_pdo_name(name);
     if (!pdo)
-      return fail(Errc::file, formatted("'{}' is not a PDO", name), "RPDO1, TPDO2: as the drive sees them");
+      return fail(Errc::file, message("'{}' is not a PDO", as_it_is(name)),
+                  "RPDO1, TPDO2: as the drive sees them");
     const ObjectAddress mapping{pdo->mapping_index(), 0};
     if (profile_->is_generic() || drive::target_at(profile_, mapping).entry != nullptr) return {};
-    return fail(
-        Errc::file, formatted("{} has no {}", profile_->family, canopen::name(pdo->direction, pdo->number)),
-        formatted("`objects '0x{:02X}*' -d {}` lists what it has", mapping.index >> 8U, profile_->family));
+    return fail(Errc::file,
+                message("{} has no {}", as_it_is(profile_->family),
+                        as_it_is(canopen::name(pdo->direction, pdo->number))),
+                message("`objects '0x{:02X}*' -d {}` lists what it has", mapping.index >> 8U,
+                        as_it_is(profile_->family)));
   }
 
   void check_limits() {
@@ -162,11 +169,13 @@ class AxisCheck {
           return drive::conversion(number->unit, unit).has_value();
         });
     if (fits) return check_range(name, text, *number);
-    auto known = std::string(formatted("{}", fmt::join(units, ", ")));
+    Message known = as_it_is(fmt::to_string(fmt::join(units, ", ")));
     if (!axis_->load && name != "torque") known += "; `per_turn` makes other units known";
-    if (axis_->load && name != "torque") known += ", " + axis_->load->unit + (name == "speed" ? "/s" : "");
-    add(axis_->limits.at, make_error(Errc::file, formatted("limits: {} = \"{}\" is no limit", name, text),
-                                     formatted("a number above 0 in {}", known)));
+    if (axis_->load && name != "torque")
+      known += as_it_is(", " + axis_->load->unit + (name == "speed" ? "/s" : ""));
+    add(axis_->limits.at,
+        make_error(Errc::file, message("limits: {} = \"{}\" is no limit", as_it_is(name), as_it_is(text)),
+                   message("a number above 0 in {}", known)));
   }
 
   /// A torque that is in the unit of the drive's own limit is held against the range of that.
@@ -177,7 +186,7 @@ class AxisCheck {
     const auto fits = settings::check_change(desk_, axis_->node, target, text, {});
     if (fits) return;
     add(axis_->limits.at,
-        make_error(Errc::file, formatted("limits: torque = \"{}\": {}", text, fits.error().message),
+        make_error(Errc::file, message("limits: torque = \"{}\": {}", as_it_is(text), fits.error().message),
                    fits.error().hint));
   }
 
@@ -192,7 +201,7 @@ class AxisCheck {
   std::map<ObjectAddress, const Setting*> places_;
   std::map<ObjectAddress, std::string_view> left_out_;
   std::vector<Error> errors_;
-  std::vector<std::string> notices_;
+  std::vector<Message> notices_;
 };
 
 /// Forty axes that share a line share what there is to say of it.
@@ -227,9 +236,9 @@ class AlikeNames {
   void add(std::string_view what, const std::string& name, Place at, Names& names) {
     const auto& first = names.emplace(lower(name), name).first->second;
     if (first == name || !told_.insert(name).second) return;
-    auto error =
-        file_error(cabinet_->file.string(), at.line, at.column,
-                   formatted("{} {} differs from {} in the case of letters alone", what, name, first));
+    auto error = file_error(
+        cabinet_->file.string(), at.line, at.column,
+        message("{} {} differs from {} in the case of letters alone", what, as_it_is(name), as_it_is(first)));
     error.hint = "a slip at the keyboard would move the other: give one of them another name";
     errors_.push_back(std::move(error));
   }
@@ -251,16 +260,16 @@ CabinetFindings check_cabinet(const Cabinet& cabinet, const LoadProfile& load) {
     const auto profile = load(axis.family);
     if (!profile) {
       const auto& tells = profile.error().hint;
-      auto hint = "correct `family`" + (tells.empty() ? "" : "; " + tells);
+      auto hint = tells.empty() ? Message("correct `family`") : message("correct `family`; {}", tells);
       auto error = cabinet_error(cabinet, axis, axis.at, profile.error().message, std::move(hint));
-      if (told.is_new(axis, error.message)) out.errors.push_back(std::move(error));
+      if (told.is_new(axis, error.message.text())) out.errors.push_back(std::move(error));
       continue;
     }
     AxisCheck check(cabinet, axis, **profile);
     for (auto& error : check.run())
-      if (told.is_new(axis, error.message)) out.errors.push_back(std::move(error));
+      if (told.is_new(axis, error.message.text())) out.errors.push_back(std::move(error));
     for (auto& notice : check.take_notices())
-      if (told.is_new(axis, notice)) out.notices.push_back(std::move(notice));
+      if (told.is_new(axis, notice.text())) out.notices.push_back(std::move(notice));
   }
   return out;
 }

@@ -13,8 +13,8 @@ namespace servoctl::cabinet {
 using LoadProfile = std::function<Result<const drive::Profile*>(const std::string& family)>;
 
 struct CabinetFindings {
-  std::vector<Error> errors;         ///< Each with file, line and column.
-  std::vector<std::string> notices;  ///< No fault, and worth a look: objects that no manual lists.
+  std::vector<Error> errors;     ///< Each with file, line and column.
+  std::vector<Message> notices;  ///< No fault, and worth a look: objects that no manual lists.
 };
 
 /// What is wrong with the axes, as far as it can be told without their drives: family, names and values of

@@ -134,9 +134,9 @@ class CabinetDifference {
       return {};
     }
     if (a.identity.serial && b.identity.serial && a.identity.serial != b.identity.serial)
-      desk_->notices.push_back(formatted("axis {}: another drive: serial number {} in {}, {} in {}", name,
-                                         serial_text(*a.identity.serial), a_->title,
-                                         serial_text(*b.identity.serial), b_->title));
+      desk_->notices.push_back(message("axis {}: another drive: serial number {} in {}, {} in {}",
+                                       as_it_is(name), serial_text(*a.identity.serial), as_it_is(a_->title),
+                                       serial_text(*b.identity.serial), as_it_is(b_->title)));
     const auto profile = (*load_)(a.family);
     if (!profile) return fail(profile.error());
     compare_sides(name, **profile, settings::side_of(a, a_->title), settings::side_of(b, b_->title));

@@ -59,9 +59,9 @@ Result<AxisPlan> plan_rest(show::Desk& desk, const Cabinet& cabinet, const Axis&
 
 Error interrupted(const Axis& axis, const std::filesystem::path& before) {
   return drive_error(Errc::refused, axis.node, "an apply was interrupted",
-                     formatted("`cabinet apply --resume` continues it; `restore {} -n {}` restores the old "
-                               "values",
-                               before.string(), axis.name));
+                     message("`cabinet apply --resume` continues it; `restore {} -n {}` restores the old "
+                             "values",
+                             as_it_is(before.string()), as_it_is(axis.name)));
 }
 
 /// Looks for a journal first: what an axis holds in the middle of a change is no basis for another.
@@ -249,15 +249,18 @@ Record plan_record(const Cabinet& cabinet, std::span<const PlannedAxis> looks) {
   return out;
 }
 
-std::string of_axis(const Axis& axis, const std::string& notice) {
+Message of_axis(const Axis& axis, const Message& notice) {
   const show::AxisNames names({{axis.node, axis.name}});
-  const auto named = names.in(notice);
-  return named.find(axis.name) == std::string::npos ? formatted("axis {}: {}", axis.name, named) : named;
+  auto named = notice;
+  names.put_into(named);
+  return named.text().find(axis.name) == std::string::npos
+             ? message("axis {}: {}", Verbatim{axis.name}, named)
+             : named;
 }
 
 Error of_axis(const Axis& axis, Error error) {
   error.message = of_axis(axis, error.message);
-  error.hint = show::AxisNames({{axis.node, axis.name}}).in(error.hint);
+  show::AxisNames({{axis.node, axis.name}}).put_into(error.hint);
   if (!error.node) error.node = axis.node;
   return error;
 }
@@ -280,14 +283,15 @@ Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks
     for (const auto& look : looks)
       if (look.waits_for_restart()) waiting.push_back(look.axis->name);
     const auto names = formatted("{}", fmt::join(waiting, ","));
-    return make_error(Errc::negative, formatted("{}: values are stored and in force after a restart", names),
-                      formatted("restart the drives; `status -n {}` says how", names));
+    return make_error(Errc::negative, message("{}: values are stored and in force after a restart", names),
+                      message("restart the drives; `status -n {}` says how", as_it_is(names)));
   }
-  return make_error(Errc::negative,
-                    values_to_do(looks) == 1
-                        ? formatted("{} differs from {}", differing(looks), cabinet.file.filename().string())
-                        : formatted("{} differ from {}", differing(looks), cabinet.file.filename().string()),
-                    "`cabinet apply` writes them");
+  return make_error(
+      Errc::negative,
+      values_to_do(looks) == 1
+          ? message("{} differs from {}", differing(looks), as_it_is(cabinet.file.filename().string()))
+          : message("{} differ from {}", differing(looks), as_it_is(cabinet.file.filename().string())),
+      "`cabinet apply` writes them");
 }
 
 }  // namespace servoctl::cabinet

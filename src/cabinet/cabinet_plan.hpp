@@ -13,7 +13,7 @@ namespace servoctl::cabinet {
 struct PlannedAxis {
   const Axis* axis = nullptr;
   Result<AxisPlan> plan;
-  std::vector<std::string> notices;
+  std::vector<Message> notices;
   bool to_do() const { return plan && plan->different > 0; }
   bool waits_for_restart() const { return plan && !plan->owed.empty(); }
 };
@@ -35,7 +35,7 @@ void tell_looks(show::Desk& desk, std::span<const PlannedAxis> looks);
 
 /// The error, and the notice, with the name of the axis where its node is meant.
 Error of_axis(const Axis& axis, Error error);
-std::string of_axis(const Axis& axis, const std::string& notice);
+Message of_axis(const Axis& axis, const Message& notice);
 
 bool any_to_do(std::span<const PlannedAxis> looks);
 /// The exit code 1 of a plan by which there is something to do: to write, or to restart.

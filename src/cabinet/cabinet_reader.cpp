@@ -66,7 +66,8 @@ class CabinetReader {
     for (const auto step : {&CabinetReader::buses, &CabinetReader::defaults, &CabinetReader::axes})
       if (const auto done = (this->*step)(root, table); !done) return fail(done.error());
     if (out_.axes.empty())
-      return fail(Errc::file, formatted("{} has no axis", name_), "write [axis.NAME] with node and family");
+      return fail(Errc::file, message("{} has no axis", as_it_is(name_)),
+                  "write [axis.NAME] with node and family");
     return std::move(out_);
   }
 
@@ -74,7 +75,8 @@ class CabinetReader {
   Result<void> buses(const TableReader& root, const toml::table& table) {
     const auto* node = table.get("bus");
     if (node == nullptr)
-      return fail(Errc::file, formatted("{} has no bus", name_), "write [bus.main] with url = \"can0\"");
+      return fail(Errc::file, message("{} has no bus", as_it_is(name_)),
+                  "write [bus.main] with url = \"can0\"");
     const auto all = named_tables(root, "bus", *node);
     if (!all) return fail(all.error());
     for (const auto& [name, one] : *all) {
@@ -89,15 +91,18 @@ class CabinetReader {
       if (!done) return done;
       if (bus.url.empty()) return reader.fail_at(*one, formatted("bus {}: 'url' is missing", name));
       if (const auto good = session::check_url(bus.url); !good)
-        return fail_at(*one->get("url"), formatted("bus {}: {}", name, good.error().message),
+        return fail_at(*one->get("url"), message("bus {}: {}", as_it_is(name), good.error().message),
                        good.error().hint);
       if (session::is_modbus(bus.url))
         return fail_at(
-            *one->get("url"), formatted("bus {}: drives on Modbus cannot stand in a cabinet file", name),
+            *one->get("url"),
+            message("bus {}: drives on Modbus cannot stand in a cabinet file", as_it_is(name)),
             "name the line with -b and the drive with -d and -n; `backup` and `restore` work there");
       for (const auto& other : out_.buses)
         if (other.url == bus.url)
-          return fail_at(*one, formatted("bus {} is {}, and so is bus {}", name, bus.url, other.name),
+          return fail_at(*one,
+                         message("bus {} is {}, and so is bus {}", as_it_is(name), as_it_is(bus.url),
+                                 as_it_is(other.name)),
                          "one interface is one bus: put its axes on one of them");
       out_.buses.push_back(std::move(bus));
     }
@@ -145,13 +150,13 @@ class CabinetReader {
   Result<void> add_axes(const std::string& pattern, const toml::table& table, const AxisPart& part) {
     const auto names = expand_name(pattern);
     if (!names) return fail_at(table, names.error().message);
-    if (part.nodes.empty()) return fail_at(table, formatted("axis {}: 'node' is missing", pattern));
+    if (part.nodes.empty()) return fail_at(table, message("axis {}: 'node' is missing", as_it_is(pattern)));
     if (names->size() != part.nodes.size())
-      return fail_at(table, formatted("axis {}: {} name{} for {} node{}", pattern, names->size(),
-                                      names->size() == 1 ? "" : "s", part.nodes.size(),
-                                      part.nodes.size() == 1 ? "" : "s"));
+      return fail_at(table, message("axis {}: {} name{} for {} node{}", as_it_is(pattern), names->size(),
+                                    names->size() == 1 ? "" : "s", part.nodes.size(),
+                                    part.nodes.size() == 1 ? "" : "s"));
     if (names->size() > 1 && part.serial)
-      return fail_at(table, formatted("axis {}: each drive has a serial number of its own", pattern));
+      return fail_at(table, message("axis {}: each drive has a serial number of its own", as_it_is(pattern)));
     for (std::size_t i = 0; i < names->size(); ++i) {
       if (const auto good = check_name((*names)[i], "an axis", table); !good) return good;
       auto axis = make_axis((*names)[i], table, part);
@@ -174,22 +179,23 @@ class CabinetReader {
       }
       std::vector<std::string> known;
       for (const auto& one : groups_) known.push_back(one.first);
-      return fail_at(table, formatted("axis {}: there is no [group.{}]", name, *group),
+      return fail_at(table, message("axis {}: there is no [group.{}]", as_it_is(name), as_it_is(*group)),
                      did_you_mean(*group, known));
     }
     if (part.family.empty())
-      return fail_at(table, formatted("axis {}: 'family' is missing: gsd600, or a file", name));
+      return fail_at(table, message("axis {}: 'family' is missing: gsd600, or a file", as_it_is(name)));
     if (const auto found = families_.find(part.family); found != families_.end())
       fill_from(part, found->second);
     out.family = file_or_family(part.family);
     if (part.bus.empty() && out_.buses.size() == 1) part.bus = out_.buses.front().name;
     if (part.bus.empty())
-      return fail_at(table, formatted("axis {}: 'bus' is missing: there are {}", name, out_.buses.size()),
-                     formatted("bus = \"{}\", or that of another", out_.buses.front().name));
+      return fail_at(table,
+                     message("axis {}: 'bus' is missing: there are {}", as_it_is(name), out_.buses.size()),
+                     message("bus = \"{}\", or that of another", as_it_is(out_.buses.front().name)));
     if (out_.bus(part.bus) == nullptr) {
       std::vector<std::string> known;
       for (const auto& bus : out_.buses) known.push_back(bus.name);
-      return fail_at(table, formatted("axis {}: there is no [bus.{}]", name, part.bus),
+      return fail_at(table, message("axis {}: there is no [bus.{}]", as_it_is(name), as_it_is(part.bus)),
                      did_you_mean(part.bus, known));
     }
     out.bus = part.bus;
@@ -213,7 +219,7 @@ class CabinetReader {
       return {};
     }
     auto error = file_error(name_, part.per_turn_at.line, part.per_turn_at.column,
-                            formatted("per_turn: {}", load.error().message));
+                            message("per_turn: {}", load.error().message));
     error.hint = load.error().hint;
     return fail(std::move(error));
   }
@@ -234,10 +240,10 @@ class CabinetReader {
 
   Result<void> check_name(const std::string& name, std::string_view what, const toml::table& table) {
     if (!is_name(name))
-      return fail_at(table, formatted("'{}' cannot be the name of {}", name, what),
+      return fail_at(table, message("'{}' cannot be the name of {}", as_it_is(name), what),
                      "a letter first; no space, comma, dot or quote; not `all`");
     if (!names_.insert(name).second)
-      return fail_at(table, formatted("'{}' is the name of two things", name),
+      return fail_at(table, message("'{}' is the name of two things", as_it_is(name)),
                      "axes and groups share their names: -n takes both");
     return {};
   }
@@ -246,14 +252,14 @@ class CabinetReader {
     for (std::size_t i = 0; i < out_.axes.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
         if (out_.axes[i].bus == out_.axes[j].bus && out_.axes[i].node == out_.axes[j].node)
-          return fail(cabinet_error(out_, out_.axes[i], out_.axes[i].at,
-                                    formatted("node {} on bus {} is axis {} already", out_.axes[i].node,
-                                              out_.axes[i].bus, out_.axes[j].name)));
+          return fail(
+              cabinet_error(out_, out_.axes[i], out_.axes[i].at,
+                            message("node {} on bus {} is axis {} already", node_name(out_.axes[i].node),
+                                    as_it_is(out_.axes[i].bus), as_it_is(out_.axes[j].name))));
     return {};
   }
 
-  tl::unexpected<Error> fail_at(const toml::node& node, const std::string& what,
-                                std::string hint = {}) const {
+  tl::unexpected<Error> fail_at(const toml::node& node, const Message& what, Message hint = {}) const {
     const auto at = node.source().begin;
     auto error = file_error(name_, at.line, at.column, what);
     error.hint = std::move(hint);

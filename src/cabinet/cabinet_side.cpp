@@ -19,9 +19,9 @@ Result<CabinetSide> open_folder(const fs::path& folder) {
     if (!backup) return fail(backup.error());
     out.backups.emplace(file.path().stem().string(), std::move(*backup));
   }
-  if (error) return fail(Errc::file, formatted("{}: {}", folder.string(), error.message()));
+  if (error) return fail(Errc::file, message("{}: {}", as_it_is(folder.string()), error.message()));
   if (out.backups.empty())
-    return fail(Errc::file, formatted("{} contains no backup", folder.string()),
+    return fail(Errc::file, message("{} contains no backup", as_it_is(folder.string())),
                 "name a folder of `cabinet backup`, or a cabinet file");
   return out;
 }

@@ -54,7 +54,7 @@ std::uint8_t node_of(const std::map<std::uint8_t, std::uint32_t>& serials, std::
 }
 
 Result<void> put_in_place(const show::Desk& desk, const Station& station, const Displaced& drive, bool unlock,
-                          std::vector<std::string>& notices) {
+                          std::vector<Message>& notices) {
   auto at = desk_at(desk, station);
   at.audience = desk.audience;
   const auto node = station.axis->node;
@@ -67,7 +67,7 @@ Result<void> put_in_place(const show::Desk& desk, const Station& station, const 
     if (outcome.error) return fail(*outcome.error);
     if (outcome.end == AddressEnd::moved) return {};
     return fail(make_error(Errc::negative,
-                           formatted("its node-ID {} holds when it was switched off and on", node),
+                           message("its node-ID {} holds when it was switched off and on", node),
                            "switch it off and on, then repeat the line: it goes on from there"));
   };
   const auto done = carry_out();
@@ -93,7 +93,7 @@ std::vector<Displaced> find_displaced(const show::Desk& desk, std::span<const St
     if (!hold_axis_identity(at, there, choice.families)) continue;
     looks[i].plan = fail(drive_error(
         Errc::negative, station.axis->node,
-        formatted("its drive (serial number {}) is at node-ID {}", serial_text(*there.serial), there.node),
+        message("its drive (serial number {}) is at node-ID {}", serial_text(*there.serial), there.node),
         "`cabinet apply` asks and gives it its node-ID first; what else differs is shown then"));
     out.push_back({i, there.node, *there.serial});
   }

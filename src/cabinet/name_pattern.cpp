@@ -32,7 +32,7 @@ Result<std::vector<std::string>> expand_name(const std::string& pattern) {
   const auto ends = split(std::string_view(inside), '-');
   const auto refused = [&] {
     return fail(Errc::file,
-                formatted("'{}': write a rising range in the braces, as feeder{{1-40}}", pattern));
+                message("'{}': write a rising range in the braces, as feeder{{1-40}}", as_it_is(pattern)));
   };
   if (ends.size() != 2) return refused();
   const auto first = parse_digits(ends[0], 10);

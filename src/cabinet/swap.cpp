@@ -65,13 +65,13 @@ class Swapping {
       return std::any_of(found->begin(), found->end(), [&](const auto& one) { return one.node == node; });
     };
     if (is_there(at_) && is_there(axis_.node))
-      return fail(
-          drive_error(Errc::refused, axis_.node,
-                      formatted("the place of {} is taken, and the new drive is at node {}", axis_.name, at_),
-                      "take the old drive off the bus; `scan --long` shows both"));
+      return fail(drive_error(
+          Errc::refused, axis_.node,
+          message("the place of {} is taken, and the new drive is at node {}", as_it_is(axis_.name), at_),
+          "take the old drive off the bus; `scan --long` shows both"));
     if (!is_there(at_) && !is_there(axis_.node))
       return fail(make_error(Errc::timeout,
-                             formatted("neither node-ID {} nor node-ID {} answers", at_, axis_.node),
+                             message("neither node-ID {} nor node-ID {} answers", at_, axis_.node),
                              "is the new drive powered and on this bus? `scan` shows who is there"));
     if (!is_there(at_)) at_ = axis_.node;
     return {};
@@ -108,15 +108,15 @@ class Swapping {
       if (!is_it && !may_be) continue;
       return fail(drive_error(
           Errc::refused, at_,
-          is_it ? formatted("its serial number is that of axis {} in the file", other.name)
-                : formatted("the file has axis {} there, and nothing tells that this is another drive",
-                            other.name),
+          is_it ? message("its serial number is that of axis {} in the file", as_it_is(other.name))
+                : message("the file has axis {} there, and nothing tells that this is another drive",
+                          as_it_is(other.name)),
           is_it
               ? "is it the new drive? `cabinet plan` shows who is where"
-              : formatted(
+              : message(
                     "where it is the new drive: `address {} -n {} -b {} -d {}` gives it its node, then repeat "
                     "the line without --from; or write `serial` of both into the file, if they have one",
-                    axis_.node, at_, axis_.bus, axis_.family)));
+                    axis_.node, at_, as_it_is(axis_.bus), as_it_is(axis_.family))));
     }
     return {};
   }
@@ -141,7 +141,7 @@ class Swapping {
     if (outcome.error) return fail(*outcome.error);
     if (outcome.end != AddressEnd::moved)
       return fail(drive_error(
-          Errc::negative, at_, formatted("its node-ID {} holds when it was switched off and on", axis_.node),
+          Errc::negative, at_, message("its node-ID {} holds when it was switched off and on", axis_.node),
           "switch it off and on, then repeat the line: it goes on from there; --wait 5min "
           "waits for it"));
     return {};
@@ -188,27 +188,27 @@ class Swapping {
   void tell_rest() {
     if (is_same_) {
       desk_.notices.push_back(
-          formatted("axis {}: this is the drive that was there: no drive was exchanged", axis_.name));
+          message("axis {}: this is the drive that was there: no drive was exchanged", as_it_is(axis_.name)));
       return;
     }
     if (axis_.serial && identity_.serial && axis_.serial != identity_.serial)
-      desk_.notices.push_back(formatted(
-          "in {}, [axis.{}]: {}; until then `plan` and `apply` refuse the new drive",
-          cabinet_.file.filename().string(), axis_.name,
-          *identity_.serial == 0 ? std::string("take `serial` out, the new drive tells none")
-                                 : formatted("change `serial` to \"0x{:08X}\"", *identity_.serial)));
-    desk_.notices.push_back(formatted(
-        "axis {}: the encoder's offset and the home position are not among the settings: `home` it, "
-        "and check the direction and the limits before it runs",
-        axis_.name));
-    if (!desk_.profile->rules.learn.speed.empty())
       desk_.notices.push_back(
-          formatted("axis {}: counts that `units learn` measured belong to the old drive", axis_.name));
+          message("in {}, [axis.{}]: {}; until then `plan` and `apply` refuse the new drive",
+                  as_it_is(cabinet_.file.filename().string()), as_it_is(axis_.name),
+                  *identity_.serial == 0 ? Message("take `serial` out, the new drive tells none")
+                                         : message("change `serial` to \"0x{:08X}\"", *identity_.serial)));
+    desk_.notices.push_back(
+        message("axis {}: the encoder's offset and the home position are not among the settings: `home` it, "
+                "and check the direction and the limits before it runs",
+                as_it_is(axis_.name)));
+    if (!desk_.profile->rules.learn.speed.empty())
+      desk_.notices.push_back(message("axis {}: counts that `units learn` measured belong to the old drive",
+                                      as_it_is(axis_.name)));
     if (options_->backup.empty())
-      desk_.notices.push_back(formatted(
+      desk_.notices.push_back(message(
           "axis {}: settings that are not in the file are as the new drive has them: `--backup DIR` restores all "
           "that were saved",
-          axis_.name));
+          as_it_is(axis_.name)));
   }
 
   Value answer() {

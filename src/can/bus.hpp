@@ -61,7 +61,7 @@ class Bus {
   virtual int poll_fd() const { return -1; }
 
   /// What people should know of the bus beside its frames, since the last call.
-  virtual std::vector<std::string> take_notices() { return {}; }
+  virtual std::vector<Message> take_notices() { return {}; }
 
   /// How many CAN FD frames have come since it was opened: receive() does not give them. 0 where there are
   /// none.

@@ -39,7 +39,7 @@ bool take_choice(LogRole role, std::string_view how, LogNumbers& out) {
 
 Result<ColumnChoice> ColumnChoice::parse(std::string_view text) {
   ColumnChoice out;
-  const auto refused = [&](std::string what) {
+  const auto refused = [&](Message what) {
     return fail(
         Errc::usage, std::move(what),
         "write the columns in their order, `time:ms,-,id:dec,len,data`, or with their headings, `id=CAN ID,data=Payload`; "
@@ -54,9 +54,9 @@ Result<ColumnChoice> ColumnChoice::parse(std::string_view text) {
     name = name.substr(0, colon);
     const auto* found = std::find_if(std::begin(kChoices), std::end(kChoices),
                                      [&](const auto& each) { return equals_nocase(each.name, name); });
-    if (found == std::end(kChoices)) return refused(formatted("'{}' is no column", name));
+    if (found == std::end(kChoices)) return refused(message("'{}' is no column", as_it_is(name)));
     if (!how.empty() && !take_choice(found->role, how, out.columns_.numbers))
-      return refused(formatted("'{}' is no way to write the column {}", how, name));
+      return refused(message("'{}' is no way to write the column {}", as_it_is(how), name));
     out.columns_.roles.push_back(found->role);
     named += equals < part.size();
     out.names_.emplace_back(trim(part.substr(std::min(equals + 1, part.size()))));

@@ -61,9 +61,9 @@ std::optional<Frame> frame_of(const Datagram& raw) {
 }
 
 tl::unexpected<Error> busy(std::string_view name, const LocalDirectory& directory) {
-  return fail(
-      Errc::bus, formatted("local:{} stays busy: a stopped or hanging process holds it", name),
-      formatted("`fuser -v {}/lock` lists the processes on this bus; end the culprit", directory.path()));
+  return fail(Errc::bus, message("local:{} stays busy: a stopped or hanging process holds it", name),
+              message("`fuser -v {}/lock` lists the processes on this bus; end the culprit",
+                      as_it_is(directory.path())));
 }
 
 /// The process ids of `member-PID-N`, with spaces between them as `kill` wants them.
@@ -129,9 +129,9 @@ void LocalBus::deliver_all(std::span<const std::uint8_t> datagram) {
 void LocalBus::give_up(const std::vector<std::string>& members) {
   lagging_.insert(members.begin(), members.end());
   notices_.push_back(
-      formatted("process {0} does not read local:{1} and loses frames; resume it (`kill -CONT {0}`) or end "
-                "it (`kill {0}`)",
-                process_ids(members), name_));
+      message("process {0} does not read local:{1} and loses frames; resume it (`kill -CONT {0}`) or end "
+              "it (`kill {0}`)",
+              as_it_is(process_ids(members)), name_));
 }
 
 /// False while the member cannot take the frame.
@@ -182,7 +182,7 @@ Result<std::unique_ptr<Bus>> open_local(std::string_view name, Duration patience
   auto directory = LocalDirectory::open(name);
   if (!directory) return fail(directory.error());
   Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (!socket) return fail(Errc::bus, formatted("cannot open local:{}: {}", name, system_text(errno)));
+  if (!socket) return fail(Errc::bus, message("cannot open local:{}: {}", name, system_text(errno)));
   // Room for a queue of one member that does not read, so that the others still get theirs.
   constexpr int kSendBytes = 1 << 20;
   ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kSendBytes, sizeof kSendBytes);

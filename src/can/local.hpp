@@ -43,7 +43,7 @@ class LocalBus final : public Bus {
   Result<std::optional<Frame>> receive(TimePoint deadline) override;
   int poll_fd() const override { return socket_.get(); }
   TimePoint next_event() const override { return inbox_.empty() ? kNever : TimePoint::min(); }
-  std::vector<std::string> take_notices() override { return std::exchange(notices_, {}); }
+  std::vector<Message> take_notices() override { return std::exchange(notices_, {}); }
 
  private:
   std::optional<Frame> take() const;
@@ -61,7 +61,7 @@ class LocalBus final : public Bus {
   ::pid_t owner_;
   std::deque<Frame> inbox_;        ///< Received while send() waited for others.
   std::set<std::string> lagging_;  ///< Members whose queue stayed full: nobody waits for them.
-  std::vector<std::string> notices_;
+  std::vector<Message> notices_;
 };
 
 }  // namespace servoctl::can

@@ -34,8 +34,8 @@ std::string base_path() {
   return formatted("/tmp/servoctl-{}", ::geteuid());
 }
 
-tl::unexpected<Error> cannot_use(const std::string& path, const std::string& why) {
-  return fail(Errc::bus, formatted("cannot use {} for the bus: {}", path, why),
+tl::unexpected<Error> cannot_use(const std::string& path, const Message& why) {
+  return fail(Errc::bus, message("cannot use {} for the bus: {}", as_it_is(path), why),
               "remove it, or set XDG_RUNTIME_DIR to your own directory for all processes on the bus");
 }
 
@@ -69,7 +69,7 @@ Result<void> check_local_name(std::string_view name) {
   constexpr std::string_view kAllowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
   if (!name.empty() && name.size() <= 32 && name.find_first_not_of(kAllowed) == std::string_view::npos)
     return {};
-  return fail(Errc::usage, formatted("'{}' cannot be the name of a local bus", name),
+  return fail(Errc::usage, message("'{}' cannot be the name of a local bus", as_it_is(name)),
               "use 1 to 32 of these: A-Z a-z 0-9 . _ -");
 }
 

@@ -54,10 +54,12 @@ Result<void> check_channel(const ReplayPlace& place, std::string_view text, cons
   const auto& [file, channel, columns] = place;
   if (channel.empty() ? buses.size() < 2 : buses.count(channel) > 0) return {};
   if (!channel.empty())
-    return fail(Errc::usage, formatted("{} has no frame of {}", file, channel),
-                formatted("it has frames of {}", list_of(buses)));
-  return fail(Errc::usage, formatted("{} has frames of several buses: {}", file, list_of(buses)),
-              formatted("name the one that is to answer: replay:{}?channel={}", file, buses.begin()->first));
+    return fail(Errc::usage, message("{} has no frame of {}", as_it_is(file), as_it_is(channel)),
+                message("it has frames of {}", as_it_is(list_of(buses))));
+  return fail(Errc::usage,
+              message("{} has frames of several buses: {}", as_it_is(file), as_it_is(list_of(buses))),
+              message("name the one that is to answer: replay:{}?channel={}", as_it_is(file),
+                      as_it_is(buses.begin()->first)));
 }
 
 TimePoint time_of(const LogFrame& line) { return TimePoint(line.time); }
@@ -75,7 +77,7 @@ Result<void> ReplayBus::send(const Frame& frame) {
     skip_done();
     return {};
   }
-  return fail(Errc::bus, formatted("{} is not in the rest of the recording {}", to_string(frame), name_),
+  return fail(Errc::bus, message("{} is not in the rest of the recording {}", to_string(frame), name_),
               "a recording answers only its original commands, in order; `decode` shows them");
 }
 
@@ -112,15 +114,17 @@ Result<std::unique_ptr<Bus>> open_replay(std::string_view place) {
   };
   const auto strays = for_each_frame(*text, take, read);
   if (strays.damage)
-    return fail(Errc::file,
-                formatted("{} is damaged at byte {}: {}", file, strays.damage->offset, strays.damage->what),
-                "`decode` shows what stands in front of that byte");
+    return fail(
+        Errc::file,
+        message("{} is damaged at byte {}: {}", as_it_is(file), strays.damage->offset, strays.damage->what),
+        "`decode` shows what stands in front of that byte");
   if (strays.open_base != 0 || strays.assumed_base != 0 || strays.assumed_data_base != 0)
-    return fail(Errc::usage,
-                formatted("{}: nothing in it says whether its identifiers are decimal or hexadecimal", file),
-                "say it behind the file: `?columns=time,id:hex,data:hex`");
+    return fail(
+        Errc::usage,
+        message("{}: nothing in it says whether its identifiers are decimal or hexadecimal", as_it_is(file)),
+        "say it behind the file: `?columns=time,id:hex,data:hex`");
   if (lines.empty())
-    return fail(Errc::file, formatted("{} contains no frames", file),
+    return fail(Errc::file, message("{} contains no frames", as_it_is(file)),
                 "recordings are what `decode` reads; `monitor --trace FILE` writes one");
   std::stable_sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
   return std::make_unique<ReplayBus>(std::move(lines), file);

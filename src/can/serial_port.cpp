@@ -30,25 +30,26 @@ std::string serial_ports_text() {
 }
 
 tl::unexpected<Error> serial_in_use(const std::string& device) {
-  return fail(Errc::bus, formatted("{} is in use by another program", device),
-              formatted("`fuser -v {}` shows which; another servoctl, slcand, a terminal program or "
-                        "ModemManager",
-                        device));
+  return fail(Errc::bus, message("{} is in use by another program", as_it_is(device)),
+              message("`fuser -v {}` shows which; another servoctl, slcand, a terminal program or "
+                      "ModemManager",
+                      as_it_is(device)));
 }
 
 tl::unexpected<Error> serial_not_opened(const std::string& device, int error) {
   if (error == EBUSY || error == EWOULDBLOCK) return serial_in_use(device);
   if (error == ENOENT)
-    return fail(Errc::bus, formatted("there is no {}", device),
-                formatted("is the adapter plugged in? {}", serial_ports_text()));
+    return fail(Errc::bus, message("there is no {}", as_it_is(device)),
+                message("is the adapter plugged in? {}", serial_ports_text()));
   if (error == EACCES || error == EPERM)
-    return fail(Errc::bus, formatted("{} may not be opened: {}", device, system_text(error)),
+    return fail(Errc::bus, message("{} may not be opened: {}", as_it_is(device), system_text(error)),
                 "its group may, mostly dialout: `sudo usermod -aG dialout $USER`, then log in again");
   if (error == ENOTTY || error == EISDIR || error == EINVAL)
-    return fail(Errc::bus, formatted("{} is no serial port", device), serial_ports_text());
+    return fail(Errc::bus, message("{} is no serial port", as_it_is(device)), serial_ports_text());
   if (error == ENXIO || error == EIO || error == ENODEV)
-    return fail(Errc::bus, formatted("there is no adapter behind {}", device), serial_ports_text());
-  return fail(Errc::bus, formatted("cannot open {}: {}", device, system_text(error)), serial_ports_text());
+    return fail(Errc::bus, message("there is no adapter behind {}", as_it_is(device)), serial_ports_text());
+  return fail(Errc::bus, message("cannot open {}: {}", as_it_is(device), system_text(error)),
+              serial_ports_text());
 }
 
 unsigned character_flags(const SerialLine& line) {
@@ -71,8 +72,8 @@ termios2 raw_settings(const SerialLine& line) {
 }
 
 Result<void> set_line(int port, const SerialLine& line) {
-  const auto refused = [&](std::string_view why) {
-    return fail(Errc::bus, formatted("{} does not take {}: {}", line.device, line.text(), why),
+  const auto refused = [&](const Message& why) {
+    return fail(Errc::bus, message("{} does not take {}: {}", as_it_is(line.device), line.text(), why),
                 "use a speed that the port and what hangs at it both have");
   };
   const auto raw = raw_settings(line);
@@ -81,7 +82,7 @@ Result<void> set_line(int port, const SerialLine& line) {
   if (::ioctl(port, TCGETS2, &now) != 0) return refused(system_text(errno));
   // What a receiver of eleven bits bears.
   const auto off = now.c_ospeed > line.baud ? now.c_ospeed - line.baud : line.baud - now.c_ospeed;
-  if (off * 50 > line.baud) return refused(formatted("it would run at {}", now.c_ospeed));
+  if (off * 50 > line.baud) return refused(message("it would run at {}", now.c_ospeed));
   return {};
 }
 
@@ -164,8 +165,8 @@ Result<SerialPort> SerialPort::open(const SerialLine& line) {
 
 tl::unexpected<Error> SerialPort::gone(int error) const {
   if (error == 0 || error == EIO || error == ENXIO || error == ENODEV)
-    return fail(Errc::bus, formatted("{} is gone", device_), "was the adapter unplugged? plug it in again");
-  return fail(Errc::bus, formatted("{} failed: {}", device_, system_text(error)),
+    return fail(Errc::bus, message("{} is gone", device_), "was the adapter unplugged? plug it in again");
+  return fail(Errc::bus, message("{} failed: {}", device_, system_text(error)),
               "was the adapter unplugged? plug it in again");
 }
 
@@ -179,7 +180,7 @@ Result<void> SerialPort::write(std::string_view text, TimePoint limit) {
     if (wrote < 0 && errno == EINTR) continue;
     if (wrote < 0 && errno != EAGAIN) return gone(errno);
     if (steady_now() >= limit)
-      return fail(Errc::bus, formatted("{} takes nothing any more", device_),
+      return fail(Errc::bus, message("{} takes nothing any more", device_),
                   "unplug the adapter and plug it in again");
     wait_for(port_.get(), POLLOUT, limit);
   }

@@ -52,7 +52,7 @@ Result<void> SlcanBus::write(std::string_view text, TimePoint limit) {
 Result<void> SlcanBus::send(const Frame& frame) {
   if (!is_of_the_protocol(frame))
     return fail(Errc::bug,
-                formatted("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
+                message("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
   if (!is_open()) return not_open();
   const auto line = slcan_line(frame);
   const auto limit = now() + kSlcanSendLimit;
@@ -66,10 +66,10 @@ Result<void> SlcanBus::send(const Frame& frame) {
     if (!answer) return fail(answer.error());
     if (*answer != Answer::refused) return {};
     if (now() >= limit)
-      return fail(
-          Errc::bus,
-          formatted("the adapter at {} refuses frames: its transmit queue remains full", place_.device),
-          "is another node on the bus, and is the bitrate right?");
+      return fail(Errc::bus,
+                  message("the adapter at {} refuses frames: its transmit queue remains full",
+                          as_it_is(place_.device)),
+                  "is another node on the bus, and is the bitrate right?");
     nap(kOfferPause);
   }
 }
@@ -92,7 +92,8 @@ Result<SlcanBus::Answer> SlcanBus::answer_to_frame(TimePoint limit) {
     if (!answer || *answer != Answer::none) return answer;
   }
   if (!version_came_ && (frame_was_acknowledged_ || !version_.empty()))
-    return lose(make_error(Errc::bus, formatted("the adapter at {} does not answer any more", place_.device),
+    return lose(make_error(Errc::bus,
+                           message("the adapter at {} does not answer any more", as_it_is(place_.device)),
                            "unplug it and plug it in again"));
   if (frame_was_acknowledged_)
     ++unanswered_;
@@ -137,9 +138,9 @@ Result<void> SlcanBus::fill() {
   while (const auto line = reader_.take()) on_line(*line, time);
   if (!got) return lose(got.error());
   if (watch_.state() == SlcanWatch::State::restarted)
-    return lose(
-        make_error(Errc::bus, formatted("the adapter at {} has started anew, and is closed", place_.device),
-                   "is its plug loose, or its supply too weak? It is opened again by the next command"));
+    return lose(make_error(
+        Errc::bus, message("the adapter at {} has started anew, and is closed", as_it_is(place_.device)),
+        "is its plug loose, or its supply too weak? It is opened again by the next command"));
   return {};
 }
 
@@ -186,7 +187,8 @@ TimePoint SlcanBus::stamped(std::uint16_t stamp, TimePoint time) {
 Result<void> SlcanBus::ask_again() {
   const auto question = watch_.take_question(now());
   if (watch_.state() == SlcanWatch::State::silent)
-    return lose(make_error(Errc::bus, formatted("the adapter at {} does not answer any more", place_.device),
+    return lose(make_error(Errc::bus,
+                           message("the adapter at {} does not answer any more", as_it_is(place_.device)),
                            "unplug it and plug it in again"));
   return question.empty() ? Result<void>() : write(question, now() + SlcanWatch::kPatience);
 }
@@ -214,19 +216,20 @@ Result<std::optional<Frame>> SlcanBus::receive(TimePoint deadline) {
   }
 }
 
-std::vector<std::string> SlcanBus::take_notices() {
-  std::vector<std::string> out;
+std::vector<Message> SlcanBus::take_notices() {
+  std::vector<Message> out;
   if (const auto count = std::exchange(damaged_, 0); count > 0)
-    out.push_back(formatted(
+    out.push_back(message(
         "{}: {} damaged line{} left out: bytes were lost between adapter and computer, and frames with them",
-        place_.device, count, count == 1 ? " was" : "s were"));
+        as_it_is(place_.device), count, count == 1 ? " was" : "s were"));
   if (const auto count = std::exchange(unanswered_, 0); count > 0)
-    out.push_back(formatted("{}: {} frame{} not acknowledged by the adapter: whether {} sent is not known",
-                            place_.device, count, count == 1 ? " was" : "s were",
-                            count == 1 ? "it was" : "they were"));
+    out.push_back(message("{}: {} frame{} not acknowledged by the adapter: whether {} sent is not known",
+                          as_it_is(place_.device), count, count == 1 ? " was" : "s were",
+                          count == 1 ? "it was" : "they were"));
   if (const auto count = std::exchange(refused_late_, 0); count > 0)
-    out.push_back(formatted("{}: the adapter refused {} frame{} after a while: {} not sent", place_.device,
-                            count, count == 1 ? "" : "s", count == 1 ? "it was" : "they were"));
+    out.push_back(message("{}: the adapter refused {} frame{} after a while: {} not sent",
+                          as_it_is(place_.device), count, count == 1 ? "" : "s",
+                          count == 1 ? "it was" : "they were"));
   return out;
 }
 

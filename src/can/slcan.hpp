@@ -53,7 +53,7 @@ class SlcanBus final : public Bus {
   std::string about() const override;
   TimePoint arrived() const override { return arrived_; }
   int poll_fd() const override { return is_open() ? port_->get() : -1; }
-  std::vector<std::string> take_notices() override;
+  std::vector<Message> take_notices() override;
   TimePoint next_event() const override;
 
  private:

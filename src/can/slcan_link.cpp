@@ -25,8 +25,8 @@ Result<void> SlcanLink::change(const LinkChange& change) {
   if (change.listen_only == true && deaf_) return fail(*deaf_);
   if (change.bitrate) {
     if (!slcan_bitrate_digit(*change.bitrate))
-      return fail(Errc::usage, formatted("{} bit/s is no bitrate that such an adapter has", *change.bitrate),
-                  formatted("one of {}", slcan_bitrates_text()));
+      return fail(Errc::usage, message("{} bit/s is no bitrate that such an adapter has", *change.bitrate),
+                  message("one of {}", slcan_bitrates_text()));
     place_.bitrate = *change.bitrate;
     is_known_ = true;
   }

@@ -107,27 +107,29 @@ Result<void> SlcanBus::judge(const SlcanOpening& opening) const {
   switch (opening.state()) {
     case SlcanOpening::State::open: return {};
     case SlcanOpening::State::refused_bitrate:
-      return fail(Errc::usage,
-                  formatted("the adapter at {} refuses {} kbit/s", place_.device, place_.bitrate / 1000),
-                  "its manual lists the bitrates that it has");
+      return fail(
+          Errc::usage,
+          message("the adapter at {} refuses {} kbit/s", as_it_is(place_.device), place_.bitrate / 1000),
+          "its manual lists the bitrates that it has");
     case SlcanOpening::State::refused_listening:
-      return fail(Errc::usage,
-                  opening.acknowledges()
-                      ? formatted("the adapter at {} cannot listen without acknowledging", place_.device)
-                      : formatted("the adapter at {} answers to no command: whether it would only listen, "
-                                  "nobody knows",
-                                  place_.device),
-                  "only listen-only leaves a bus undisturbed at a wrong bitrate: use another adapter, or ask "
-                  "what the bitrate is");
+      return fail(
+          Errc::usage,
+          opening.acknowledges()
+              ? message("the adapter at {} cannot listen without acknowledging", as_it_is(place_.device))
+              : message("the adapter at {} answers to no command: whether it would only listen, "
+                        "nobody knows",
+                        as_it_is(place_.device)),
+          "only listen-only leaves a bus undisturbed at a wrong bitrate: use another adapter, or ask "
+          "what the bitrate is");
     case SlcanOpening::State::refused_opening:
-      return fail(Errc::bus, formatted("the adapter at {} does not open its bus", place_.device),
+      return fail(Errc::bus, message("the adapter at {} does not open its bus", as_it_is(place_.device)),
                   "unplug it and plug it in again");
     default: break;
   }
   return fail(
       Errc::bus,
-      formatted("no adapter answers at {}{}", place_.device,
-                opening.heard_something() ? ", though something talks there" : ""),
+      message("no adapter answers at {}{}", as_it_is(place_.device),
+              opening.heard_something() ? ", though something talks there" : ""),
       "is it one with the LAWICEL protocol (slcan)? A real serial line needs the adapter's baud rate as well: "
       "slcan:/dev/ttyUSB0@500k,57600");
 }
@@ -153,10 +155,10 @@ Result<void> SlcanBus::recover(TimePoint deadline) {
 
 Result<void> SlcanBus::leave_for(std::uint32_t bitrate) {
   if (!slcan_bitrate_digit(bitrate))
-    return fail(Errc::usage, formatted("{} bit/s is no bitrate that such an adapter has", bitrate));
+    return fail(Errc::usage, message("{} bit/s is no bitrate that such an adapter has", bitrate));
   close();
   place_.bitrate = bitrate;
-  lost_ = make_error(Errc::bus, formatted("the adapter at {} was left", place_.device));
+  lost_ = make_error(Errc::bus, message("the adapter at {} was left", as_it_is(place_.device)));
   return {};
 }
 

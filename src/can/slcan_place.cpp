@@ -23,11 +23,11 @@ std::optional<std::uint32_t> slcan_bitrate(std::string_view text) {
   return static_cast<std::uint32_t>(out);
 }
 
-tl::unexpected<Error> no_slcan_place(std::string_view text, std::string_view why) {
-  return fail(Errc::usage, formatted("slcan:{}: {}", text, why),
-              formatted("write slcan:/dev/ttyACM0@500k: the port, and a bitrate of {}; where the port is a "
-                        "real serial line, its baud rate behind: slcan:/dev/ttyUSB0@500k,57600",
-                        slcan_bitrates_text()));
+tl::unexpected<Error> no_slcan_place(std::string_view text, const Message& why) {
+  return fail(Errc::usage, message("slcan:{}: {}", text, why),
+              message("write slcan:/dev/ttyACM0@500k: the port, and a bitrate of {}; where the port is a "
+                      "real serial line, its baud rate behind: slcan:/dev/ttyUSB0@500k,57600",
+                      slcan_bitrates_text()));
 }
 
 }  // namespace
@@ -55,13 +55,14 @@ Result<SlcanPlace> parse_slcan_place(std::string_view text) {
   const auto comma = rates.find(',');
   const auto bitrate = slcan_bitrate(rates.substr(0, comma));
   if (!bitrate)
-    return no_slcan_place(text,
-                          formatted("'{}' is no bitrate that such an adapter has", rates.substr(0, comma)));
+    return no_slcan_place(
+        text, message("'{}' is no bitrate that such an adapter has", as_it_is(rates.substr(0, comma))));
   out.bitrate = *bitrate;
   if (comma == std::string_view::npos) return out;
   const auto baud = parse_baud(rates.substr(comma + 1));
   if (!baud)
-    return no_slcan_place(text, formatted("'{}' is no baud rate of a serial port", rates.substr(comma + 1)));
+    return no_slcan_place(
+        text, message("'{}' is no baud rate of a serial port", as_it_is(rates.substr(comma + 1))));
   out.baud = *baud;
   return out;
 }

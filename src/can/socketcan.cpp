@@ -111,7 +111,7 @@ SocketCanBus::SocketCanBus(Descriptor socket, std::string interface_name, Durati
 Result<void> SocketCanBus::send(const Frame& frame) {
   if (!is_sendable(frame))
     return fail(Errc::bug,
-                formatted("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
+                message("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
   if (is_bus_off_) return interface_bus_off(interface_name_);
   const auto raw = kernel_frame(frame);
   std::optional<TimePoint> limit;  // The clock is asked only when the first try fails.
@@ -172,7 +172,7 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
     if (opened) {
       waits_in_slices_ = wait_in_slices(opened->get(), kSlice);
       if (::dup3(opened->get(), socket_.get(), O_CLOEXEC) < 0)
-        return fail(Errc::bus, formatted("cannot open {} again: {}", interface_name_, system_text(errno)));
+        return fail(Errc::bus, message("cannot open {} again: {}", interface_name_, system_text(errno)));
       inbox_.clear();
       failed_.reset();
       is_bus_off_ = false;
@@ -184,7 +184,7 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
   }
 }
 
-std::vector<std::string> SocketCanBus::take_notices() {
+std::vector<Message> SocketCanBus::take_notices() {
   const auto count = fd_frames_ - std::exchange(told_fd_, fd_frames_);
   if (count == 0) return {};
   return {count == 1 ? formatted("{}: 1 CAN FD frame came; servoctl reads frames of classical CAN only",

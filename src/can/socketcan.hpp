@@ -66,7 +66,7 @@ class SocketCanBus final : public Bus {
   void gather(Duration delay) override { delay_ = delay; }
   int poll_fd() const override { return socket_.get(); }
   /// How many CAN FD frames came: receive() does not give them, CANopen has none.
-  std::vector<std::string> take_notices() override;
+  std::vector<Message> take_notices() override;
   std::uint64_t fd_frames() const override { return fd_frames_; }
   TimePoint next_event() const override { return inbox_.empty() ? kNever : TimePoint::min(); }
 

@@ -8,7 +8,7 @@
 namespace servoctl::can {
 
 /// The command that brings the interface up, in backquotes.
-std::string up_command(const std::string& name);
+Message up_command(const std::string& name);
 
 tl::unexpected<Error> interface_no_name(const std::string& name);
 tl::unexpected<Error> interface_missing(const std::string& name);

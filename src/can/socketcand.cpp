@@ -92,19 +92,19 @@ Result<void> SocketcandBus::judge() const {
     case DialogueState::raw: return {};
     case DialogueState::refused:
       return fail(
-          Errc::bus, formatted("{} refuses {}: {}", server, place_.interface_name, dialogue_->why()),
+          Errc::bus, message("{} refuses {}: {}", as_it_is(server), place_.interface_name, dialogue_->why()),
           "it has the interfaces that it was started with (its option -i), and they have to be up there");
     case DialogueState::stranger:
       return fail(
-          Errc::bus, formatted("what listens at {} is no socketcand", server),
-          formatted("its port is {}, where it was not started with another one", SocketcandPlace::kPort));
+          Errc::bus, message("what listens at {} is no socketcand", as_it_is(server)),
+          message("its port is {}, where it was not started with another one", SocketcandPlace::kPort));
     case DialogueState::silent:
     case DialogueState::greeted:
     case DialogueState::opening:
     case DialogueState::entering_raw_mode:
     case DialogueState::testing_echo: break;
   }
-  return fail(Errc::bus, formatted("{} took the connection and does not answer", server),
+  return fail(Errc::bus, message("{} took the connection and does not answer", as_it_is(server)),
               "is it a socketcand, and does it hang?");
 }
 
@@ -148,7 +148,7 @@ Result<void> SocketcandBus::await_room(std::size_t size, TimePoint limit) {
   while (!dialogue_->has_room(size)) {
     if (const auto spoken = speak(); !spoken) return spoken;
     if (now() >= limit)
-      return fail(Errc::bus, formatted("{} takes no frames any more", place_.server()),
+      return fail(Errc::bus, message("{} takes no frames any more", place_.server()),
                   "is its machine or the network between overloaded?");
     if (wait_for(connection_->get(), POLLIN, limit) != Wake::ready) continue;
     if (const auto filled = fill(); !filled) return filled;
@@ -159,12 +159,12 @@ Result<void> SocketcandBus::await_room(std::size_t size, TimePoint limit) {
 Result<void> SocketcandBus::send(const Frame& frame) {
   if (!fits_a_frame(frame))
     return fail(Errc::bug,
-                formatted("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
+                message("a frame that cannot be sent: {}, {} bytes", to_string(frame), frame.size));
   if (frame.remote)
-    return fail(Errc::usage,
-                formatted("the remote frame {} cannot be sent by socketcand: its protocol has none",
-                          to_string(frame)),
-                "node guarding and PDOs that are asked for need another bus; heartbeat (1017h) goes without");
+    return fail(
+        Errc::usage,
+        message("the remote frame {} cannot be sent by socketcand: its protocol has none", to_string(frame)),
+        "node guarding and PDOs that are asked for need another bus; heartbeat (1017h) goes without");
   if (!is_open()) return not_there();
   const auto text = socketcand_send(frame);
   const auto limit = now() + kServerSendLimit;
@@ -195,7 +195,7 @@ Result<std::optional<Frame>> SocketcandBus::receive(TimePoint deadline) {
     }
     dialogue_->on_time(now());
     if (dialogue_->state() != DialogueState::raw)
-      return lose(make_error(Errc::bus, formatted("{} does not answer any more", place_.server()),
+      return lose(make_error(Errc::bus, message("{} does not answer any more", place_.server()),
                              "check cable and network, and whether its server hangs"));
     if (const auto spoken = speak(); !spoken) return fail(spoken.error());
     if (now() >= deadline) return std::optional<Frame>();
@@ -213,13 +213,13 @@ Result<void> SocketcandBus::recover(TimePoint deadline) {
   }
 }
 
-std::vector<std::string> SocketcandBus::take_notices() {
-  std::vector<std::string> out;
+std::vector<Message> SocketcandBus::take_notices() {
+  std::vector<Message> out;
   for (const auto& text : std::exchange(complaints_, {}))
-    out.push_back(formatted("{} reports an error: {}", place_.server(), text));
+    out.push_back(message("{} reports an error: {}", place_.server(), text));
   if (const auto count = std::exchange(damaged_, 0); count > 0)
-    out.push_back(formatted("{}: {} element{} left out: no frame of the protocol", place_.server(), count,
-                            count == 1 ? " was" : "s were"));
+    out.push_back(message("{}: {} element{} left out: no frame of the protocol", place_.server(), count,
+                          count == 1 ? " was" : "s were"));
   return out;
 }
 

@@ -41,7 +41,7 @@ class SocketcandBus final : public Bus {
   Result<void> recover(TimePoint deadline) override;
   TimePoint arrived() const override { return arrived_; }
   int poll_fd() const override { return is_open() ? connection_->get() : -1; }
-  std::vector<std::string> take_notices() override;
+  std::vector<Message> take_notices() override;
   TimePoint next_event() const override;
 
  private:

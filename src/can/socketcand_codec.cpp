@@ -102,9 +102,9 @@ Element parse_element(std::string_view text) {
   return out;
 }
 
-tl::unexpected<Error> no_server_place(std::string_view text, std::string_view why) {
+tl::unexpected<Error> no_server_place(std::string_view text, const Message& why) {
   return fail(
-      Errc::usage, formatted("socketcand:{}: {}", text, why),
+      Errc::usage, message("socketcand:{}: {}", text, why),
       "write socketcand://HOST/can0: the server, perhaps its port (socketcand://HOST:29536/can0), and the "
       "CAN interface that it has there");
 }
@@ -126,7 +126,7 @@ Result<SocketcandPlace> parse_socketcand_place(std::string_view text) {
   out.interface_name = rest.substr(slash + 1);
   if (out.interface_name.size() > kMostName ||
       out.interface_name.find_first_of(" \t\r\n<>/") != std::string::npos)
-    return no_server_place(text, formatted("'{}' is no name of an interface", out.interface_name));
+    return no_server_place(text, message("'{}' is no name of an interface", as_it_is(out.interface_name)));
   auto server = rest.substr(0, slash);
   const auto bracket = server.starts_with('[') ? server.find(']') : std::string_view::npos;
   const auto colon = server.find(':', bracket == std::string_view::npos ? 0 : bracket);
@@ -138,7 +138,7 @@ Result<SocketcandPlace> parse_socketcand_place(std::string_view text) {
   if (colon == std::string_view::npos) return out;
   const auto port = parse_digits(server.substr(colon + 1), 10);
   if (!port || *port == 0 || *port > 0xFFFF)
-    return no_server_place(text, formatted("'{}' is no port", server.substr(colon + 1)));
+    return no_server_place(text, message("'{}' is no port", as_it_is(server.substr(colon + 1))));
   out.port = static_cast<std::uint16_t>(*port);
   return out;
 }

@@ -98,7 +98,7 @@ void TraceBus::record(const Frame& frame, TimePoint time) {
             now());
 }
 
-std::vector<std::string> TraceBus::take_notices() {
+std::vector<Message> TraceBus::take_notices() {
   auto out = inner_->take_notices();
   if (auto notice = file_.take_notice()) out.push_back(std::move(*notice));
   return out;

@@ -63,7 +63,7 @@ class TraceBus final : public Bus {
   void gather(Duration delay) override { inner_->gather(delay); }
   int poll_fd() const override { return inner_->poll_fd(); }
   TimePoint next_event() const override;
-  std::vector<std::string> take_notices() override;
+  std::vector<Message> take_notices() override;
   std::uint64_t fd_frames() const override { return inner_->fd_frames(); }
   void flush_trace() override { file_.flush(now()); }
   /// The bus is left before the reader is waited for: nobody waits for servoctl there.

@@ -34,10 +34,12 @@ Result<TraceFile> TraceFile::open(const std::filesystem::path& file, TraceFailed
   Descriptor log(::open(file.c_str(), kFlags, 0666));
   if (log) return TraceFile(std::move(log), file.string(), std::move(failed));
   if (errno == ENXIO)
-    return fail(Errc::file,
-                formatted("cannot write the trace {}: nobody reads this pipe or socket", file.string()),
-                "start its reader first, such as `cat` on the pipe");
-  return fail(Errc::file, formatted("cannot write the trace {}: {}", file.string(), system_text(errno)),
+    return fail(
+        Errc::file,
+        message("cannot write the trace {}: nobody reads this pipe or socket", as_it_is(file.string())),
+        "start its reader first, such as `cat` on the pipe");
+  return fail(Errc::file,
+              message("cannot write the trace {}: {}", as_it_is(file.string()), system_text(errno)),
               "choose an existing folder you may write to");
 }
 
@@ -113,7 +115,7 @@ void TraceFile::drop_written(std::size_t bytes) {
 void TraceFile::give_up(int error) {
   file_ = Descriptor();
   if (failed_)
-    failed_(fail(Errc::file, formatted("cannot write the trace {}: {}", name_, system_text(error)),
+    failed_(fail(Errc::file, message("cannot write the trace {}: {}", name_, system_text(error)),
                  "the trace ends here; the command continues without it")
                 .value());
 }

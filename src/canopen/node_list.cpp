@@ -32,10 +32,11 @@ Result<std::vector<std::uint8_t>> parse_node_ids(std::string_view text, std::str
     const auto first = parse_node_id(part.substr(0, dash));
     const auto last = dash == std::string_view::npos ? first : parse_node_id(part.substr(dash + 1));
     if (!first || !last || *first > *last)
-      return fail(Errc::usage, formatted("'{}' is not a node-ID", part), std::string(hint));
+      return fail(Errc::usage, message("'{}' is not a node-ID", as_it_is(part)), std::string(hint));
     for (auto node = *first; node <= *last; ++node) out.push_back(static_cast<std::uint8_t>(node));
   }
-  if (out.empty()) return fail(Errc::usage, formatted("'{}' is not a node-ID", text), std::string(hint));
+  if (out.empty())
+    return fail(Errc::usage, message("'{}' is not a node-ID", as_it_is(text)), std::string(hint));
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;

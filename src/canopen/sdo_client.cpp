@@ -157,7 +157,7 @@ void SdoClient::on_abort(const can::Frame& frame, TimePoint now) {
   if (state_ == State::block_upload_initiate && may_fall_back) return begin_upload(now);
   if (state_ == State::block_download_initiate && may_fall_back) return begin_download(false, now);
   const bool reads = state_ == State::upload_initiate || state_ == State::block_upload_initiate;
-  auto refused = error(Errc::sdo_abort, formatted("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
+  auto refused = error(Errc::sdo_abort, message("refused: {} (abort 0x{:08X})", sdo_abort_text(code), code),
                        reads ? sdo_abort_hint(code) : sdo_abort_hint(code, object_));
   refused.abort_code = code;
   finish(fail(std::move(refused)));
@@ -306,7 +306,7 @@ void SdoClient::finish(Result<Bytes> result) {
   core_.finish(std::move(result));
 }
 
-Error SdoClient::error(Errc code, std::string message, std::string hint) const {
+Error SdoClient::error(Errc code, Message message, Message hint) const {
   if (foreign_request_ && hint.empty()) hint = "another master is also using SDO with this node";
   return drive_error(code, node_, object_, message, std::move(hint));
 }

@@ -138,7 +138,7 @@ class SdoClient {
   void send(const can::Frame& frame, State next, TimePoint now);
   void abort(std::uint32_t code, Errc errc, std::string why, std::string hint = {});
   void finish(Result<Bytes> result);
-  Error error(Errc code, std::string message, std::string hint = {}) const;
+  Error error(Errc code, Message message, Message hint = {}) const;
 
   std::uint8_t node_;
   SdoCore core_;

@@ -15,14 +15,14 @@ using command::Needs;
 Result<void> check_allowed(const command::Command& command, const command::Arguments& arguments,
                            const Settings& settings) {
   if (command.of_front_end)
-    return fail(Errc::usage, formatted("'{}' is not allowed in a batch file", command.path),
+    return fail(Errc::usage, message("'{}' is not allowed in a batch file", as_it_is(command.path)),
                 "`for` repeats lines; a script runs several files");
   // A command that asks for more than reading is refused as a whole, before anything is opened.
   const auto effect = command.effect_with(arguments);
   if (settings.read_only && effect >= Effect::links && !settings.dry_run)
     return fail(Errc::refused,
-                formatted("'{}' changes {}, and --read-only forbids it", command.path,
-                          effect == Effect::links ? "an interface" : "a drive"),
+                message("'{}' changes {}, and --read-only forbids it", as_it_is(command.path),
+                        effect == Effect::links ? "an interface" : "a drive"),
                 "leave --read-only out to allow it");
   return {};
 }
@@ -32,11 +32,11 @@ Result<void> check_whole_file(const command::Command& command, const Settings& s
   const bool bus = settings.bus_from == Source::line;
   if (!whole || (!bus && !settings.nodes_typed() && !settings.drive_typed())) return {};
   return fail(Errc::usage,
-              formatted("{} is for lines that name their own nodes: bus, nodes and families stand in the "
-                        "cabinet file",
-                        bus                      ? "--bus"
-                        : settings.nodes_typed() ? "--node"
-                                                 : "--drive"),
+              message("{} is for lines that name their own nodes: bus, nodes and families stand in the "
+                      "cabinet file",
+                      bus                      ? "--bus"
+                      : settings.nodes_typed() ? "--node"
+                                               : "--drive"),
               "leave it out; axes are chosen by name: `--axis` or the word after the command");
 }
 
@@ -73,8 +73,10 @@ Result<void> check_network(const command::Command& command, session::Session& se
                     : std::string(command.elsewhere);
     if (session.gateway() != nullptr && kind == "CAN")
       hint = "objects and NMT commands work there: `read`, `param set`, `backup`, `nmt start`";
-    return fail(Errc::usage, formatted("'{0}' needs {1}, {2} is not {1}", command.path, kind, session.url()),
-                hint);
+    return fail(
+        Errc::usage,
+        message("'{0}' needs {1}, {2} is not {1}", as_it_is(command.path), kind, as_it_is(session.url())),
+        hint);
   };
   if (includes(command.needs, Needs::can) && session.can() == nullptr) return refuse("CAN");
   const bool knows_nmt = session.can() != nullptr || session.gateway() != nullptr;
@@ -88,7 +90,8 @@ Result<void> admit(const command::Command& command, const command::Arguments& ar
   if (const auto possible = check_network(command, session); !possible) return possible;
   const auto why = session.network().why_no_power();
   if (!why.empty() && command.effect_with(arguments) == Effect::moves)
-    return fail(Errc::refused, formatted("'{}' is refused over {}: {}", command.path, session.url(), why),
+    return fail(Errc::refused,
+                message("'{}' is refused over {}: {}", as_it_is(command.path), as_it_is(session.url()), why),
                 "run servoctl where the bus is, or use its CAN interface: socketcand://HOST/can0");
   return {};
 }
@@ -109,14 +112,14 @@ Result<void> check_registers(const command::Command& command, session::Session& 
                              const drive::Profile* profile, bool chinese) {
   if (session.modbus() == nullptr) return {};
   if (profile != nullptr && !profile->rules.modbus.exists())
-    return fail(Errc::usage, formatted("of {} no Modbus registers are known", profile->family),
+    return fail(Errc::usage, message("of {} no Modbus registers are known", profile->family),
                 "use its CAN or EtherCAT port, or describe the registers: docs/drive-data.md, [modbus]");
   if (command.on_registers) return {};
-  auto what =
-      formatted("'{}' does not work over Modbus, which has parameters and readings alone", command.path);
+  auto what = message("'{}' does not work over Modbus, which has parameters and readings alone",
+                      as_it_is(command.path));
   // What moves a drive names it.
   if (command.effect < Effect::moves || !includes(command.needs, Needs::node))
-    return fail(Errc::usage, std::move(what), formatted("what works there: {}", works_on_registers()));
+    return fail(Errc::usage, std::move(what), message("what works there: {}", works_on_registers()));
   const auto* rules = profile == nullptr ? nullptr : &profile->rules.modbus;
   if (rules == nullptr || rules->motion.empty())
     return fail(Errc::usage, std::move(what), "motion needs the drive's CAN or EtherCAT port");
@@ -126,7 +129,7 @@ Result<void> check_registers(const command::Command& command, session::Session& 
 }
 
 Error no_node(const command::Command& command) {
-  return fail(Errc::usage, formatted("'{}' needs a node", command.path),
+  return fail(Errc::usage, message("'{}' needs a node", as_it_is(command.path)),
               "add -n 1 (or a list, or all); `scan` shows who is there")
       .value();
 }

@@ -37,9 +37,9 @@ Result<void> check_counts(const Cabinet& cabinet, const Axis& axis, const comman
   const auto typed = parse_integer(arguments.text(option));
   if (!in_file || !typed || (typed->magnitude == *in_file && !typed->negative)) return {};
   return fail(Errc::usage,
-              formatted("{} has {} = {} by {}, not {}", axis.name, key, *in_file,
-                        cabinet.file.filename().string(), arguments.text(option)),
-              formatted("leave {} out, or change the file", option));
+              message("{} has {} = {} by {}, not {}", as_it_is(axis.name), as_it_is(key), as_it_is(*in_file),
+                      as_it_is(cabinet.file.filename().string()), as_it_is(arguments.text(option))),
+              message("leave {} out, or change the file", as_it_is(option)));
 }
 
 /// How to get rid of a setting that contradicts the file.
@@ -57,20 +57,21 @@ struct Named {
   const command::Arguments* arguments;
   const Settings* settings;
   Source from;
-  std::vector<std::string>* notices;
+  std::vector<Message>* notices;
   bool way_out = false;  ///< Nothing that is set keeps a drive from being stopped.
 };
 
 /// Of what is given beside an axis: `is` is what the file says of it, `given` the value of `option`.
 Result<void> weigh(const Named& named, const Axis& axis, Source from, std::string_view option,
-                   const std::string& is, const std::string& wanted) {
+                   const Message& is, const Message& wanted) {
   const auto file = named.cabinet->file.filename().string();
   const auto& given = option == "--bus" ? named.settings->bus : named.settings->drive;
   if (from >= named.from && !named.way_out)
-    return fail(Errc::usage, formatted("{} is {} by {}, not {}", axis.name, is, file, wanted),
-                formatted("{}, or change the file", without(from, option)));
-  add_once(*named.notices,
-           formatted("{} ({}) is not used: {} says it of each axis", name_of(from, option), given, file));
+    return fail(Errc::usage,
+                message("{} is {} by {}, not {}", as_it_is(axis.name), is, as_it_is(file), wanted),
+                message("{}, or change the file", without(from, option)));
+  add_once(*named.notices, message("{} ({}) is not used: {} says it of each axis", name_of(from, option),
+                                   as_it_is(given), as_it_is(file)));
   return {};
 }
 
@@ -80,11 +81,13 @@ Result<void> check_given(const Named& named, const Axis& axis) {
   const auto& bus = *named.cabinet->bus(axis.bus);
   if (!settings.bus.empty() && bus_given(*named.cabinet, settings.bus) != &bus)
     if (const auto right = weigh(named, axis, settings.bus_from, "--bus",
-                                 formatted("on bus {} ({})", bus.name, bus.url), "on " + settings.bus);
+                                 message("on bus {} ({})", as_it_is(bus.name), as_it_is(bus.url)),
+                                 message("on {}", as_it_is(settings.bus)));
         !right)
       return right;
   if (!settings.drive.empty() && settings.drive != axis.family)
-    if (const auto right = weigh(named, axis, settings.drive_from, "--drive", axis.family, settings.drive);
+    if (const auto right = weigh(named, axis, settings.drive_from, "--drive", Verbatim{axis.family},
+                                 Verbatim{settings.drive});
         !right)
       return right;
   if (const auto turn = check_counts(*named.cabinet, axis, *named.arguments, "turn", axis.turn); !turn)
@@ -145,18 +148,19 @@ Result<void> check_plain(const Cabinet& cabinet, const cabinet::Bus& bus, const 
                          const command::Arguments& arguments, const Settings& settings) {
   const bool changes = command.effect_with(arguments) > command::Effect::reads && !settings.dry_run;
   if (!changes) return {};
-  return fail(
-      Errc::usage,
-      formatted("which bus? '{}' changes {}, and the line names neither an axis nor a bus", command.path,
-                command.effect_with(arguments) == command::Effect::links ? "an interface" : "a drive"),
-      formatted("add --bus {} ({}, by {}), or name the axes", bus.name, bus.url, cabinet.file.string()));
+  return fail(Errc::usage,
+              message("which bus? '{}' changes {}, and the line names neither an axis nor a bus",
+                      as_it_is(command.path),
+                      command.effect_with(arguments) == command::Effect::links ? "an interface" : "a drive"),
+              message("add --bus {} ({}, by {}), or name the axes", as_it_is(bus.name), as_it_is(bus.url),
+                      as_it_is(cabinet.file.string())));
 }
 
 /// It sets bus, family and limits of lines that do not name it.
 Result<void> check_cabinet_found(const std::filesystem::path& file) {
-  return check_found_file(file, formatted("nothing of this cabinet file was used; if you trust it, name it: "
-                                          "--cabinet {0}, or SERVOCTL_CABINET={0}",
-                                          file.string()));
+  return check_found_file(file, message("nothing of this cabinet file was used; if you trust it, name it: "
+                                        "--cabinet {0}, or SERVOCTL_CABINET={0}",
+                                        as_it_is(file.string())));
 }
 
 }  // namespace
@@ -220,7 +224,7 @@ std::vector<std::string> with_axis_option(std::vector<std::string> words, const 
 
 Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Command& command,
                                        const command::Arguments& arguments, const Settings& settings,
-                                       std::vector<std::string>& notices) {
+                                       std::vector<Message>& notices) {
   Named named{&cabinet, &arguments, &settings, settings.nodes_from, &notices, command.way_out};
   if (names_axes(settings.nodes)) {
     const auto axes = cabinet.select(settings.nodes);
@@ -253,9 +257,10 @@ Result<std::vector<LinePart>> parts_of(const Cabinet& cabinet, const command::Co
   if (looks && !makes_file) return out;
   std::vector<std::string> names;
   for (const auto& bus : cabinet.buses) names.push_back(formatted("`--bus {}`", bus.name));
-  return fail(Errc::usage,
-              formatted("which bus? {} has {}", cabinet.file.filename().string(), cabinet.buses.size()),
-              formatted("add {}, or name the axes", one_of(names)));
+  return fail(
+      Errc::usage,
+      message("which bus? {} has {}", as_it_is(cabinet.file.filename().string()), cabinet.buses.size()),
+      message("add {}, or name the axes", one_of(names)));
 }
 
 std::vector<OptionOfAxis> add_axis_options(std::span<const Axis* const> axes, const command::Command& command,

@@ -60,7 +60,7 @@ std::vector<std::string> with_axis_option(std::vector<std::string> words, const 
 /// axes says another bus or family than the file. Weaker ones lose, which `notices` say.
 Result<std::vector<LinePart>> parts_of(const cabinet::Cabinet& cabinet, const command::Command& command,
                                        const command::Arguments& arguments, const Settings& settings,
-                                       std::vector<std::string>& notices);
+                                       std::vector<Message>& notices);
 
 /// An option that the file says, and the key under which it does: `--limit`, `limits.speed`.
 struct OptionOfAxis {

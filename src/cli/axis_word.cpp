@@ -5,13 +5,13 @@
 namespace servoctl::cli {
 namespace {
 
-std::string axis_hint(const std::string& word, const Result<const cabinet::Cabinet*>& known) {
+Message axis_hint(const std::string& word, const Result<const cabinet::Cabinet*>& known) {
   if (!known)
-    return formatted("'{}' may be an axis, but the cabinet file cannot be used: {}", word,
-                     known.error().message);
+    return message("'{}' may be an axis, but the cabinet file cannot be used: {}", as_it_is(word),
+                   known.error().message);
   if (*known == nullptr) return "nodes are named by -n; there is no cabinet file here that names axes";
   const auto axes = (*known)->select(word);
-  return axes ? std::string() : formatted("{}; {}", axes.error().message, axes.error().hint);
+  return axes ? Message() : message("{}; {}", axes.error().message, axes.error().hint);
 }
 
 }  // namespace
@@ -21,10 +21,10 @@ Error about_axis(Error error, const std::vector<std::string>& words, const Comma
   const auto after = match.first + match.used;
   if (match.command == nullptr || !includes(match.command->needs, command::Needs::node) ||
       after >= words.size() || words[after].starts_with("-") ||
-      error.message.find("unexpected argument") == std::string::npos)
+      error.message.text().find("unexpected argument") == std::string::npos)
     return error;
   const auto more = axis_hint(words[after], cabinet());
-  if (!more.empty()) error.hint = formatted("{}; {}", more, error.hint);
+  if (!more.empty()) error.hint = message("{}; {}", more, error.hint);
   return error;
 }
 

@@ -22,7 +22,7 @@ std::vector<const Axis*> axes_in(const Cabinet& cabinet, const Settings& setting
 
 }  // namespace
 
-void add_once(std::vector<std::string>& notices, std::string notice) {
+void add_once(std::vector<Message>& notices, Message notice) {
   if (std::find(notices.begin(), notices.end(), notice) == notices.end())
     notices.push_back(std::move(notice));
 }
@@ -36,7 +36,7 @@ const cabinet::Bus* bus_given(const Cabinet& cabinet, const std::string& bus) {
   return found == cabinet.buses.end() ? nullptr : &*found;
 }
 
-Result<Settings> settle_bus(const Cabinet& cabinet, Settings settings, std::vector<std::string>& notices) {
+Result<Settings> settle_bus(const Cabinet& cabinet, Settings settings, std::vector<Message>& notices) {
   const auto bus_from = settings.bus_from;
   if (settings.bus.empty() || settings.cabinet_from == Source::folder || settings.cabinet_from < bus_from)
     return settings;
@@ -56,11 +56,12 @@ Result<Settings> settle_bus(const Cabinet& cabinet, Settings settings, std::vect
   if (known != nullptr || bus_from == Source::set) return settings;
   std::vector<std::string> names;
   for (const auto& bus : cabinet.buses) names.push_back(formatted("{} ({})", bus.name, bus.url));
-  return fail(
-      Errc::usage,
-      formatted("{} has no bus {}: {} and {} contradict each other", cabinet.file.string(), settings.bus,
-                name_of(bus_from, "--bus"), name_of(settings.cabinet_from, "--cabinet")),
-      formatted("its buses: {}; leave one of the two out", fmt::join(names, ", ")));
+  return fail(Errc::usage,
+              message("{} has no bus {}: {} and {} contradict each other", as_it_is(cabinet.file.string()),
+                      as_it_is(settings.bus), name_of(bus_from, "--bus"),
+                      name_of(settings.cabinet_from, "--cabinet")),
+              message("its buses: {}; leave one of the two out",
+                      as_it_is(fmt::format("{}", fmt::join(names, ", ")))));
 }
 
 bool are_on_bus(const Cabinet& cabinet, const Settings& settings) {

@@ -11,7 +11,7 @@
 namespace servoctl::cli {
 
 /// Adds the notice unless it is there.
-void add_once(std::vector<std::string>& notices, std::string notice);
+void add_once(std::vector<Message>& notices, Message notice);
 
 /// The bus of the file with this name or this URL; null where there is none.
 const cabinet::Bus* bus_given(const cabinet::Cabinet& cabinet, const std::string& bus);
@@ -20,7 +20,7 @@ const cabinet::Bus* bus_given(const cabinet::Cabinet& cabinet, const std::string
 /// wins: a bus that loses to the file is taken out, which `notices` say. Errc::usage where both come from one
 /// source and the file has no such bus.
 Result<Settings> settle_bus(const cabinet::Cabinet& cabinet, Settings settings,
-                            std::vector<std::string>& notices);
+                            std::vector<Message>& notices);
 
 /// Whether all axes that the nodes of the settings name are on its bus. True without names or a bus.
 bool are_on_bus(const cabinet::Cabinet& cabinet, const Settings& settings);

@@ -107,8 +107,8 @@ bool BusHolder::has_adapter(std::string_view adapter) const {
 Result<void> BusHolder::release_adapter(std::string_view adapter) {
   if (const auto nodes = energised_on(adapter); !nodes.empty())
     return fail(Errc::refused,
-                formatted("{} stays open: node {} is energised over it", adapter, nodes.front()),
-                formatted("`disable -n {}` first", nodes.front()));
+                message("{} stays open: node {} is energised over it", adapter, node_name(nodes.front())),
+                message("`disable -n {}` first", node_name(nodes.front())));
   for (auto* session : sessions()) {
     if (!is_over(session::canonical_url(session->url()), adapter)) continue;
     stop_sync(*session);
@@ -192,7 +192,8 @@ void BusHolder::tell_opened() {
 void BusHolder::on_trace_failed(const Error& error) {
   trace_failure_ = error;
   if (!flushing_)
-    console_->err(formatted("notice: {}; {}\n", printable(error.message), printable(error.hint)));
+    console_->err(
+        formatted("notice: {}; {}\n", printable(error.message.text()), printable(error.hint.text())));
 }
 
 std::optional<Error> BusHolder::take_trace_failure() {

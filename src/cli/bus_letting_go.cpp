@@ -24,7 +24,7 @@ constexpr Duration kTelling = std::chrono::seconds(1);
 }  // namespace
 
 void BusHolder::lose(session::Session& session) {
-  const auto lost = make_error(Errc::bus, formatted("{} was lost", session.url()));
+  const auto lost = make_error(Errc::bus, message("{} was lost", as_it_is(session.url())));
   for (const auto node : session.energised().nodes()) warn(session, node, lost);
   if (produces_sync(session))
     console_->err(formatted("notice: SYNC is no longer produced: {} was lost\n", session.url()));
@@ -61,7 +61,7 @@ Result<void> BusHolder::connect_again(const std::string& url, const std::set<std
     const bool may_come = !back && (back.error().code == Errc::bus || back.error().code == Errc::interrupted);
     if (!may_come || time >= end) return back;
     if (time >= next_line) {
-      console_->note(formatted("notice: {}: trying again to stop node{} {}\n", back.error().message,
+      console_->note(formatted("notice: {}: trying again to stop node{} {}\n", back.error().message.text(),
                                nodes.size() == 1 ? "" : "s", fmt::join(nodes, ", ")));
       next_line += kTelling;
     }
@@ -78,7 +78,7 @@ void BusHolder::stop_and_disable(session::Session& session) {
     if (in_fault)
       fail_closing(names(session), motion::ended_in_fault(node));
     else if (done)
-      console_->err("notice: " + names(session).in(motion::disabled_notice(node)) + "\n");
+      console_->err("notice: " + names(session).sentence(motion::disabled_notice(node)) + "\n");
     else
       warn(session, node, done.error());
   }
@@ -90,12 +90,12 @@ void BusHolder::warn(session::Session& session, std::uint8_t node, const Error& 
 
 void BusHolder::warn(const std::string& url, std::uint8_t node, const Error& why) {
   warned_[{url, node}] = why.code;
-  console_->err("error: " + names_[url].in(motion::power_warning(node, why.message)) + "\n");
+  console_->err("error: " + names_[url].sentence(motion::power_warning(node, why.message)) + "\n");
 }
 
 void BusHolder::fail_closing(const show::AxisNames& names, const Error& error) {
   if (!closing_failure_) closing_failure_ = error.code;
-  console_->err("error: " + names.in(printable(error.message)) + "\n");
+  console_->err("error: " + printable(names.sentence(error.message)) + "\n");
 }
 
 bool BusHolder::has_warned_of_all() const {

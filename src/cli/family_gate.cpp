@@ -88,8 +88,8 @@ Result<void> FamilyGate::ask_all(std::span<const std::uint8_t> nodes, const driv
       return fail(identity.error());
     if (must_answer)
       notices_->push_back(
-          formatted("node {} did not answer the identity check: whether it is a {} is not verified", nodes[i],
-                    profile.family));
+          message("node {} did not answer the identity check: whether it is a {} is not verified",
+                  node_name(nodes[i]), as_it_is(profile.family)));
   }
   return {};
 }
@@ -110,7 +110,7 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   const bool contradicted = verdict.kind == FamilyVerdict::Kind::contradicted;
   if (contradicted && refuses && !options_.force) {
     auto error =
-        drive_error(Errc::refused, node, formatted("not a {}: {}", profile.family, verdict.why),
+        drive_error(Errc::refused, node, message("not a {}: {}", as_it_is(profile.family), verdict.why),
                     forcing_hint(others(identity, families), node, !options_.names.of(node).empty()));
     error.object = verdict.object;
     return fail(std::move(error));
@@ -119,10 +119,10 @@ Result<void> FamilyGate::hold_one(const session::Identity& identity, const drive
   if (unproven_read || !session_->identities().is_news(node, profile.family + (contradicted ? "!" : "?")))
     return {};
   const std::string_view forced = refuses ? "; continuing because of --force-family" : "";
-  notices_->push_back(
-      contradicted
-          ? formatted("node {}: not a {}: {}{}", node, profile.family, verdict.why, forced)
-          : formatted("node {}: nothing proves that it is a {}: {}", node, profile.family, verdict.why));
+  notices_->push_back(contradicted ? message("node {}: not a {}: {}{}", node_name(node),
+                                             as_it_is(profile.family), verdict.why, forced)
+                                   : message("node {}: nothing proves that it is a {}: {}", node_name(node),
+                                             as_it_is(profile.family), verdict.why));
   return {};
 }
 

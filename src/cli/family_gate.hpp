@@ -22,7 +22,7 @@ class FamilyGate {
     show::AxisNames names = {};  ///< Whose family the cabinet file says: -d does not.
   };
 
-  FamilyGate(session::Session& session, const Options& options, std::vector<std::string>& notices)
+  FamilyGate(session::Session& session, const Options& options, std::vector<Message>& notices)
       : session_(&session), options_(options), notices_(&notices) {}
 
   /// What a command asks for: to change something, to tell what makes sense for the family alone, or to read
@@ -44,7 +44,7 @@ class FamilyGate {
 
   session::Session* session_;
   Options options_;
-  std::vector<std::string>* notices_;
+  std::vector<Message>* notices_;
 };
 
 /// How much a command weighs with these arguments, by its data.

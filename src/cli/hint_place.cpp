@@ -123,9 +123,21 @@ std::string with_place(std::string_view text, const ParsedLine& line) {
   }
 }
 
+namespace {
+
+void put_place(Message& message, const ParsedLine& line) {
+  const auto within = [&](Message::Argument& argument) {
+    if (auto* text = std::get_if<std::string>(&argument)) *text = with_place(*text, line);
+  };
+  message = Verbatim{message.changed([](std::string_view literal) { return literal; }, within)
+                         .text([&](std::string_view command) { return placed(command, line); })};
+}
+
+}  // namespace
+
 Outcome with_place(Outcome outcome, const ParsedLine& line) {
-  for (auto& error : outcome.errors) error.hint = with_place(error.hint, line);
-  for (auto& notice : outcome.notices) notice = with_place(notice, line);
+  for (auto& error : outcome.errors) put_place(error.hint, line);
+  for (auto& notice : outcome.notices) put_place(notice, line);
   if (auto* table = outcome.result.table()) place_mends(*table, line, outcome.told);
   return outcome;
 }

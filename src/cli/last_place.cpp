@@ -80,7 +80,7 @@ Result<void> check_cabinet(Shell& shell, const LastPlace& place) {
   const bool none_meant = place.cabinet.empty() && !names_axes(place.nodes);
   if (cabinet == nullptr)
     return none_meant ? Result<void>() : fail(Errc::usage, "no cabinet file is in use here");
-  if (none_meant) return fail(Errc::usage, formatted("{} is in use here", cabinet->file.string()));
+  if (none_meant) return fail(Errc::usage, message("{} is in use here", as_it_is(cabinet->file.string())));
   if (file_of(*cabinet) == place.cabinet) return {};
   return fail(Errc::usage, "the cabinet file is another one");
 }
@@ -175,8 +175,8 @@ bool take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   if (told || state_folder.empty()) return false;
   const auto last = LastPlaceFile(state_folder).read(folder_now());
   if (!last) {
-    auto text = last.error().message;
-    if (!last.error().hint.empty()) append(text, last.error().hint, "; ");
+    auto text = last.error().message.text();
+    if (!last.error().hint.empty()) append(text, last.error().hint.text(), "; ");
     tell(shell, text);
     return true;
   }
@@ -187,7 +187,7 @@ bool take_last_place(Shell& shell, const std::filesystem::path& state_folder) {
   const auto words = in_words(place, shell.console().chinese());
   if (const auto there = go_to(shell, place); !there) {
     tell(shell, formatted("not as last time ({}): {}; `bus` and `use` say where to go", words,
-                          there.error().message));
+                          there.error().message.text()));
     return true;
   }
   const bool waits = place.bus.empty() || !opens_silently(shell, place.bus);

@@ -31,14 +31,14 @@ std::string time_of_day() {
 Result<std::unique_ptr<LineLog>> LineLog::open(const std::filesystem::path& file) {
   const auto name = file.string();
   const auto refused = [&](int error) {
-    return fail(Errc::file, formatted("{}: {}", name, std::strerror(error)),
+    return fail(Errc::file, message("{}: {}", as_it_is(name), std::strerror(error)),
                 "name another file, or a folder that you may write to");
   };
   // A FIFO would be waited for, a device might do anything.
   struct stat kind {};
   const bool there = ::stat(name.c_str(), &kind) == 0;
   if (there && !S_ISREG(kind.st_mode))
-    return fail(Errc::file, formatted("{} is no regular file", name), "name a file");
+    return fail(Errc::file, message("{} is no regular file", as_it_is(name)), "name a file");
   if (const auto links = check_links(file); !links) return fail(links.error());
   can::Descriptor descriptor(
       ::open(name.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0666));
@@ -74,8 +74,9 @@ void LineLog::put(std::string_view time, std::string_view mark, std::string_view
   const auto written = ::write(file_.get(), record.data(), record.size());
   if (written == static_cast<ssize_t>(record.size())) return;
   const int error = written < 0 ? errno : ENOSPC;
-  failure_ = make_error(Errc::file, formatted("{}: {}: the log has ended here", name_, std::strerror(error)),
-                        "make room, then `log on FILE` goes on; what runs is not stopped by it");
+  failure_ =
+      make_error(Errc::file, message("{}: {}: the log has ended here", as_it_is(name_), std::strerror(error)),
+                 "make room, then `log on FILE` goes on; what runs is not stopped by it");
   file_ = {};
 }
 

@@ -47,7 +47,7 @@ bool is_log(const std::string& file) {
 Result<void> may_log(Shell& shell, const std::string& file) {
   if (!show::is_replaced(file) || is_log(file)) return {};
   if (shell.defaults().read_only)
-    return fail(Errc::refused, formatted("{} is no log, and --read-only changes no file", file),
+    return fail(Errc::refused, message("{} is no log, and --read-only changes no file", as_it_is(file)),
                 "name a file that does not exist yet");
   command::Context context;
   RunningLine line(shell, shell.defaults(), context);

@@ -32,9 +32,9 @@ std::string errors_text(std::span<const Error> errors, bool told) {
   std::string out;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (i > 0 && errors[i].message == errors[i - 1].message) continue;
-    out += remark("error: ", errors[i].message, told);
+    out += remark("error: ", errors[i].message.text(), told);
     const bool again = i + 1 < errors.size() && errors[i + 1].hint == errors[i].hint;
-    if (!errors[i].hint.empty() && !again) out += remark("  hint: ", errors[i].hint, told);
+    if (!errors[i].hint.empty() && !again) out += remark("  hint: ", errors[i].hint.text(), told);
   }
   return out;
 }
@@ -63,7 +63,7 @@ std::string document(const Outcome& outcome) {
   json.member("result", outcome.result);
   json.key("notices");
   json.begin_list();
-  for (const auto& notice : outcome.notices) json.value(notice);
+  for (const auto& notice : outcome.notices) json.value(notice.text());
   json.end_list();
   json.end_record();
   out += '\n';
@@ -152,7 +152,7 @@ int show(Console& console, const Outcome& outcome) {
 
 void show_remarks(Console& console, const Outcome& outcome) {
   if (!outcome.settings.quiet || outcome.leaves_power)
-    for (const auto& notice : outcome.notices) console.err(remark("notice: ", notice, outcome.told));
+    for (const auto& notice : outcome.notices) console.err(remark("notice: ", notice.text(), outcome.told));
   console.err(errors_text(outcome.errors, outcome.told));
 }
 

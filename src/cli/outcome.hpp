@@ -19,7 +19,7 @@ struct Outcome {
   bool uses_bus = false;
   report::Value result = {};
   std::vector<Error> errors = {};  ///< The first one makes the exit code.
-  std::vector<std::string> notices = {};
+  std::vector<Message> notices = {};
   bool told = false;          ///< Errors and notices are in the language of who reads already.
   bool leaves_power = false;  ///< Drives stay energised behind the line: no notice of it is hidden.
   std::string abort_words =

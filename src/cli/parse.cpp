@@ -139,7 +139,7 @@ class LineParser {
     try {
       app_.parse(std::move(words));
     } catch (const CLI::ParseError& e) {
-      return fail(Errc::usage, formatted("{}: {}", command_->path, e.what()), help_hint());
+      return fail(Errc::usage, message("{}: {}", command_->path, e.what()), help_hint());
     }
     if (const auto rest = app_.remaining(); !rest.empty()) return superfluous(rest.front());
     take_results();
@@ -154,8 +154,8 @@ class LineParser {
       const bool every = parameter->kind == Kind::flag || parameter->many || parameter->repeats;
       if (every || given.empty() || std::ranges::count(given, given.front()) == std::ssize(given)) continue;
       return fail(Errc::usage,
-                  formatted("{}: {} is given twice: {} and {}", command_->path, parameter->name,
-                            given.front(), given.back()),
+                  message("{}: {} is given twice: {} and {}", command_->path, parameter->name, given.front(),
+                          given.back()),
                   "leave one of them out");
     }
     return {};
@@ -177,12 +177,11 @@ class LineParser {
       if (option == nullptr) continue;
       const bool has_value = equals != std::string::npos;
       if (option->kind == Kind::flag && has_value)
-        return fail(Errc::usage, formatted("{}: {} takes no value", command_->path, option->name),
-                    help_hint());
+        return fail(Errc::usage, message("{}: {} takes no value", command_->path, option->name), help_hint());
       if (option->kind == Kind::flag || has_value) continue;
       if (i + 1 == words.size() || option_named(words[i + 1]) != nullptr)
-        return fail(Errc::usage, formatted("{}: {} needs a value", command_->path, option->name),
-                    formatted("{}: {}; {}", option->name, option->help, help_hint()));
+        return fail(Errc::usage, message("{}: {} needs a value", command_->path, option->name),
+                    message("{}: {}; {}", option->name, option->help, help_hint()));
       ++i;
     }
     return {};
@@ -227,8 +226,8 @@ class LineParser {
       const auto& parameter = *entry.parameter;
       if (entry.values.empty() && !entry.is_given()) {
         if (parameter.required)
-          return fail(Errc::usage, formatted("{}: {} is missing", command_->path, as_in_help(parameter)),
-                      formatted("{}: {}; {}", as_in_help(parameter), parameter.help, help_hint()));
+          return fail(Errc::usage, message("{}: {} is missing", command_->path, as_in_help(parameter)),
+                      message("{}: {}; {}", as_in_help(parameter), parameter.help, help_hint()));
         continue;
       }
       if (parameter.kind == Kind::flag) out.add(parameter.name, "true");
@@ -244,13 +243,15 @@ class LineParser {
 
   tl::unexpected<Error> bad_choice(const Parameter& parameter, const std::string& value) const {
     const std::vector<std::string> choices(parameter.choices.begin(), parameter.choices.end());
-    return fail(Errc::usage,
-                formatted("{}: '{}' is not valid for {}", command_->path, value, as_in_help(parameter)),
-                "write " + one_of(choices));
+    return fail(
+        Errc::usage,
+        message("{}: '{}' is not valid for {}", command_->path, as_it_is(value), as_in_help(parameter)),
+        "write " + one_of(choices));
   }
 
   tl::unexpected<Error> one_too_many(const std::string& word) const {
-    return fail(Errc::usage, formatted("{}: unexpected argument '{}'", command_->path, word), help_hint());
+    return fail(Errc::usage, message("{}: unexpected argument '{}'", command_->path, as_it_is(word)),
+                help_hint());
   }
 
   tl::unexpected<Error> superfluous(const std::string& word) const {
@@ -259,7 +260,7 @@ class LineParser {
     for (const auto& entry : bound_)
       if (is_option(*entry.parameter)) known.emplace_back(entry.parameter->name);
     auto hint = did_you_mean(word, known);
-    return fail(Errc::usage, formatted("{}: there is no option '{}'", command_->path, word),
+    return fail(Errc::usage, message("{}: there is no option '{}'", command_->path, as_it_is(word)),
                 hint.empty() ? help_hint() : hint);
   }
 
@@ -301,7 +302,7 @@ Result<void> check_options_alone(const std::vector<std::string>& words) {
     if (option == nullptr && !joined && word.starts_with('-')) {
       std::vector<std::string> known;
       for (const auto& each : command::global_options()) known.emplace_back(each.name);
-      return fail(Errc::usage, formatted("there is no option '{}'", word), did_you_mean(word, known));
+      return fail(Errc::usage, message("there is no option '{}'", as_it_is(word)), did_you_mean(word, known));
     }
     if (option != nullptr && option->kind != Kind::flag && word.find('=') == std::string::npos) ++i;
   }

@@ -54,16 +54,19 @@ Result<void> Restriction::check_bus(std::string_view url) const {
   const auto wanted = session::canonical_url(url);
   if (std::find(buses_.begin(), buses_.end(), wanted) != buses_.end()) return {};
   if (buses_.empty())
-    return fail(Errc::refused, formatted("--restricted: the run was given no bus, and a line names {}", url),
+    return fail(Errc::refused,
+                message("--restricted: the run was given no bus, and a line names {}", as_it_is(url)),
                 "give the run its bus: run FILE --restricted --bus BUS");
-  return fail(Errc::refused, formatted("--restricted allows no other bus than {}: {}", one_of(buses_), url),
+  return fail(Errc::refused,
+              message("--restricted allows no other bus than {}: {}", one_of(buses_), as_it_is(url)),
               std::string(kWay));
 }
 
 Result<void> Restriction::check_file(const fs::path& file) const {
   if (!folder_.empty() && is_below(real_place(file), folder_)) return {};
   return fail(Errc::refused,
-              formatted("--restricted allows no file outside of {}: {}", folder_.string(), file.string()),
+              message("--restricted allows no file outside of {}: {}", as_it_is(folder_.string()),
+                      as_it_is(file.string())),
               std::string(kWay));
 }
 
@@ -75,7 +78,7 @@ Result<void> Restriction::check_family(std::string_view family) const {
 Result<void> Restriction::check_words(const command::Command& command,
                                       const command::Arguments& arguments) const {
   if (leaves_bus(command, arguments))
-    return fail(Errc::refused, formatted("--restricted does not allow '{}'", command.path),
+    return fail(Errc::refused, message("--restricted does not allow '{}'", as_it_is(command.path)),
                 std::string(kWay));
   if (arguments.has("--cabinet"))
     return fail(Errc::refused, "--restricted allows no line to name a cabinet file",

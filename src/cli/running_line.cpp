@@ -40,7 +40,7 @@ Result<void> RunningLine::confirm(std::string_view question) {
   const auto asked = printable(settings_->names.in(in_language(question)));
   shell_->end_progress();
   if (!console.can_ask())
-    return fail(Errc::refused, formatted("confirmation needed: {}", shown), "add --yes to confirm");
+    return fail(Errc::refused, message("confirmation needed: {}", shown), "add --yes to confirm");
   const HeardStarts before(shell_->sessions());
   if (console.ask(asked)) return hold_nodes(before);
   return fail(shell_->cancelled() ? Errc::interrupted : Errc::refused, "not confirmed; nothing was changed");

@@ -112,7 +112,7 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
     const auto timeout = read_duration(arguments.text("--timeout"));
     if (!timeout || *timeout == Duration::zero())
       return fail(Errc::usage,
-                  timeout ? formatted("--timeout: '{}' is too short", arguments.text("--timeout"))
+                  timeout ? message("--timeout: '{}' is too short", as_it_is(arguments.text("--timeout")))
                           : "--timeout: " + timeout.error().message,
                   timeout ? "write 500ms or 2s" : timeout.error().hint);
     base.timeout = *timeout;
@@ -120,8 +120,8 @@ Result<Settings> apply_options(Settings base, const command::Arguments& argument
   if (arguments.has("--retries")) {
     const auto retries = parse_digits(arguments.text("--retries"), 10);
     if (!retries || *retries > 100)
-      return fail(Errc::usage,
-                  formatted("--retries: '{}' is not a number from 0 to 100", arguments.text("--retries")));
+      return fail(Errc::usage, message("--retries: '{}' is not a number from 0 to 100",
+                                       as_it_is(arguments.text("--retries"))));
     base.retries = static_cast<std::uint32_t>(*retries);
   }
   if (const auto right = check_contradictions(arguments); !right) return fail(right.error());

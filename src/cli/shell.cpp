@@ -30,25 +30,25 @@ using report::Value;
 /// Whatever is told of a line speaks of axes by their names.
 void name_axes_in(const show::AxisNames& names, command::Context& context, Value& result) {
   for (auto& error : context.errors)
-    for (auto* text : {&error.message, &error.hint}) *text = names.in(*text);
-  for (auto& notice : context.notices) notice = names.in(notice);
+    for (auto* part : {&error.message, &error.hint}) names.put_into(*part);
+  for (auto& notice : context.notices) names.put_into(notice);
   names.put_into(result);
 }
 
 /// What is told of `node 3` is looked for under that name, before it has another.
 void put_into_chinese(command::Context& context, const report::Names* of_family) {
   for (auto& error : context.errors)
-    for (auto* text : {&error.message, &error.hint}) *text = report::in_chinese(*text, of_family);
-  for (auto& notice : context.notices) notice = report::in_chinese(notice, of_family);
+    for (auto* part : {&error.message, &error.hint}) report::put_into_chinese(*part, of_family);
+  for (auto& notice : context.notices) report::put_into_chinese(notice, of_family);
 }
 
 /// What nobody took from the output in time.
-void tell_unread(Console& console, std::vector<std::string>& notices) {
+void tell_unread(Console& console, std::vector<Message>& notices) {
   if (const auto left_out = console.take_left_out(); left_out > 0)
-    notices.push_back(formatted(
+    notices.push_back(message(
         "{} samples were not shown: the output was not read in time; --csv has every sample", left_out));
   if (const auto untold = console.take_untold(); untold > 0)
-    notices.push_back(formatted("{} messages were not shown: the output was not read in time", untold));
+    notices.push_back(message("{} messages were not shown: the output was not read in time", untold));
 }
 
 }  // namespace
@@ -221,7 +221,7 @@ void Shell::keep_restarts() {
     if (auto* watch = bus_.restarts(*session))
       if (const auto kept = watch->keep(); !kept)
         console_->note(formatted("notice: what waits for a restart is not remembered: {}\n",
-                                 printable(kept.error().message)));
+                                 printable(kept.error().message.text())));
 }
 
 Outcome Shell::finish(Run& run, const Result<Value>& result) {

@@ -148,7 +148,7 @@ class Shell {
   /// As parts_of(), with the cabinet file of the settings; none where there is no such file, or the line does
   /// not need it. Errors as there, and of the file.
   Result<std::vector<LinePart>> parts_of_line(const ParsedLine& line, const Settings& settings,
-                                              std::vector<std::string>& notices);
+                                              std::vector<Message>& notices);
   /// What one line said, for the lines that follow: as settle_bus(), and what lost is told at once.
   Result<Settings> settings_for_lines(Settings settings);
   /// As with_axis_option().
@@ -166,7 +166,7 @@ class Shell {
   const std::filesystem::path& state_folder() const { return options_.state_folder; }
 
   /// Lines about what nodes told since the last call.
-  std::vector<std::string> take_notices(const drive::Profile* profile, bool chinese);
+  std::vector<Message> take_notices(const drive::Profile* profile, bool chinese);
   /// The same as notices on the console, by the family of the defaults.
   void tell_notices();
 
@@ -206,7 +206,7 @@ class Shell {
   void tell_order(const session::Session& session, std::uint8_t node, std::string_view order);
   void tell_family(const Run& run);
   Outcome perform_parsed(const ParsedLine& line, const Settings& settings);
-  Outcome perform_parts(const ParsedLine& line, const Settings& settings, std::vector<std::string>& notices);
+  Outcome perform_parts(const ParsedLine& line, const Settings& settings, std::vector<Message>& notices);
   struct PartRun;
   Result<void> check_parts(const ParsedLine& line, const std::vector<LinePart>& parts);
   void tell_place(const Run& run);

@@ -49,9 +49,10 @@ Result<void> check_wires(const command::Command& command, const std::vector<Line
     for (const auto* axis : part.axes) append(is_can ? rest : left_out, axis->name, ",");
   }
   if (left_out.empty() || rest.empty()) return {};
-  return fail(Errc::usage,
-              formatted("'{}' needs CAN, and {} is not on CAN: nothing was done", command.path, left_out),
-              "name the others: -n " + rest);
+  return fail(
+      Errc::usage,
+      message("'{}' needs CAN, and {} is not on CAN: nothing was done", as_it_is(command.path), left_out),
+      "name the others: -n " + rest);
 }
 
 /// Where nothing but the bus tells rows apart.
@@ -81,8 +82,8 @@ struct Shell::PartRun {
   /// Who did not type an option finds it where it was said.
   void name_file(Error& error) const {
     for (const auto& [option, key] : from_file)
-      if (error.hint.find(formatted("{} ", option)) != std::string::npos)
-        error.hint += formatted("; the cabinet file says it: `{}`", key);
+      if (error.hint.text().find(formatted("{} ", option)) != std::string::npos)
+        error.hint += message("; the cabinet file says it: `{}`", as_it_is(key));
   }
 
   command::Arguments arguments;
@@ -93,14 +94,14 @@ struct Shell::PartRun {
 };
 
 Outcome Shell::perform_parsed(const ParsedLine& line, const Settings& settings) {
-  std::vector<std::string> notices;
+  std::vector<Message> notices;
   auto out = perform_parts(line, settings, notices);
   out.notices.insert(out.notices.begin(), notices.begin(), notices.end());
   return out;
 }
 
 Outcome Shell::perform_parts(const ParsedLine& line, const Settings& settings,
-                             std::vector<std::string>& notices) {
+                             std::vector<Message>& notices) {
   auto parts = parts_of_line(line, settings, notices);
   if (!parts) return failed(parts.error(), settings, line.command->path);
   if (parts->empty()) return perform_part(line, {settings, {}, {}});
@@ -133,7 +134,7 @@ Result<void> Shell::check_parts(const ParsedLine& line, const std::vector<LinePa
     for (const auto* axis : part.axes) context.nodes.push_back(axis->node);
     auto right = command.check(context, line.arguments);
     if (!right) {
-      right.error().message = part.settings.names.in(right.error().message);
+      part.settings.names.put_into(right.error().message);
       return right;
     }
   }

@@ -30,13 +30,6 @@ std::string value_text(const show::Reading& reading, const Bytes& bytes, bool ch
   return label.empty() ? decoded.text : formatted("{} {}", decoded.text, label);
 }
 
-/// The message of an error without the place, which stands before it already.
-std::string_view message_at(const session::Exchange& one) {
-  const std::string_view message = one.result.error().message;
-  const auto place = formatted("node {}, object {}: ", one.node, to_string(one.object));
-  return message.starts_with(place) ? message.substr(place.size()) : message;
-}
-
 std::string exchange_text(const session::Exchange& one, const drive::Profile* profile, bool chinese) {
   const auto target = drive::target_at(profile, one.object);
   const show::Reading reading{.node = one.node, .target = target, .type = {}};
@@ -48,14 +41,15 @@ std::string exchange_text(const session::Exchange& one, const drive::Profile* pr
   if (one.written != nullptr) {
     const auto value = value_text(reading, *one.written, chinese);
     const auto bytes = bytes_text(*one.written);
-    return one.result ? formatted("node {}, object {}: written in {:.1f} ms: {} (bytes: {})", one.node,
-                                  object, time, value, bytes)
-                      : formatted("node {}, object {}: write of {} (bytes: {}) failed after {:.1f} ms: {}",
-                                  one.node, object, value, bytes, time, message_at(one));
+    return one.result
+               ? formatted("node {}, object {}: written in {:.1f} ms: {} (bytes: {})", one.node, object, time,
+                           value, bytes)
+               : formatted("node {}, object {}: write of {} (bytes: {}) failed after {:.1f} ms: {}", one.node,
+                           object, value, bytes, time, what_happened(one.result.error()).text());
   }
   if (!one.result)
     return formatted("node {}, object {}: read failed after {:.1f} ms, tries: {}: {}", one.node, object, time,
-                     one.tries, message_at(one));
+                     one.tries, what_happened(one.result.error()).text());
   const auto value = value_text(reading, *one.result, chinese);
   const auto bytes = bytes_text(*one.result);
   return one.tries == 1 ? formatted("node {}, object {}: read in {:.1f} ms: {} (bytes: {})", one.node, object,

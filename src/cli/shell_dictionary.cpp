@@ -51,7 +51,8 @@ Result<void> Shell::prepare_families(Run& run) {
     for (const auto node : *nodes)
       if (const auto [known, is_new] = run.context.families.try_emplace(node, *loaded);
           !is_new && known->second != *loaded)
-        return fail(Errc::usage, formatted("-d names two families for node {}", node), "say each node once");
+        return fail(Errc::usage, message("-d names two families for node {}", node_name(node)),
+                    "say each node once");
   }
   return {};
 }
@@ -69,7 +70,7 @@ Result<void> Shell::take_standard(Run& run, const Error& without) {
 Result<void> Shell::prepare_profile(Run& run, bool changes) {
   if (names_nodes(run.settings.drive)) {
     if (run.command->family_by_node) return prepare_families(run);
-    return fail(Errc::usage, formatted("{} takes one family for all nodes", run.command->path),
+    return fail(Errc::usage, message("{} takes one family for all nodes", as_it_is(run.command->path)),
                 "the cabinet file names the family of each axis; `decode` takes -d 3=gsd600,4=da200");
   }
   if (equals_nocase(run.settings.drive, kOnline) || asks_a_drive(run.settings, *run.command)) {
@@ -112,8 +113,8 @@ Result<void> Shell::ask_drive(Run& run) {
   run.context.profile = place.get();
   if (!asked->left_out.empty())
     run.context.notices.push_back(
-        formatted("node {} lists {} objects or entries that it does not describe; the first: {}", node,
-                  asked->left_out.size(), asked->left_out.front()));
+        message("node {} lists {} objects or entries that it does not describe; the first: {}",
+                node_name(node), asked->left_out.size(), asked->left_out.front()));
   return {};
 }
 
@@ -137,7 +138,8 @@ Result<const drive::Profile*> Shell::device_of_node(Run& run, const Error& why) 
        {formatted("0x{:08X}:0x{:08X}", *product, revision.value_or(0)), formatted("0x{:08X}", *product)}) {
     auto found = profile(formatted("{}#{}", sheet.path, device));
     if (!found) continue;
-    run.context.notices.push_back(formatted("node {} is {}#{} by its identity", node, sheet.path, device));
+    run.context.notices.push_back(
+        message("node {} is {}#{} by its identity", node_name(node), as_it_is(sheet.path), as_it_is(device)));
     return found;
   }
   return fail(why);

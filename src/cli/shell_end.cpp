@@ -16,7 +16,7 @@ int Shell::hold() {
   while (!cancelled() && bus_.must_go_on()) {
     const auto stepped = session.step(session.now() + std::chrono::milliseconds(250));
     for (const auto& notice : take_notices(nullptr, false))
-      console_->note("notice: " + printable(notice) + "\n");
+      console_->note("notice: " + printable(notice.text()) + "\n");
     if (!stepped) return report_error(stepped.error(), false);
   }
   if (cancelled()) {
@@ -40,9 +40,10 @@ std::optional<Errc> Shell::tell_energised_at_end() {
     context.session = session;
     motion::tell_left_energised(context, nodes);
     const auto& names = bus_.names(*session);
-    for (const auto& notice : context.notices) console_->err("notice: " + printable(names.in(notice)) + "\n");
+    for (const auto& notice : context.notices)
+      console_->err("notice: " + printable(names.sentence(notice)) + "\n");
     for (const auto& error : context.errors) {
-      console_->err("error: " + printable(names.in(error.message)) + "\n");
+      console_->err("error: " + printable(names.sentence(error.message)) + "\n");
       out = out.value_or(error.code);
     }
   }

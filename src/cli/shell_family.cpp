@@ -45,7 +45,7 @@ Suggestion suggested(Session& session, Identity identity, std::span<const drive:
 }
 
 tl::unexpected<Error> needs_family(const command::Command& command, std::string hint) {
-  return fail(Errc::usage, formatted("'{}' needs the drive family", command.path), std::move(hint));
+  return fail(Errc::usage, message("'{}' needs the drive family", as_it_is(command.path)), std::move(hint));
 }
 
 /// The families of the nodes of a line, in the order they come.
@@ -65,9 +65,10 @@ tl::unexpected<Error> several_families(const Cast& cast) {
   const auto& [other, there] = cast[1];
   return fail(
       Errc::usage,
-      formatted("node {} is taken for {}, node {} for {}", here.front(), one, there.front(), other),
-      formatted("a line for each family, if the nameplates agree: {}; or a cabinet file (`cabinet init`)",
-                lines));
+      message("node {} is taken for {}, node {} for {}", node_name(here.front()), one,
+              node_name(there.front()), other),
+      message("a line for each family, if the nameplates agree: {}; or a cabinet file (`cabinet init`)",
+              lines));
 }
 
 }  // namespace
@@ -120,9 +121,9 @@ std::optional<KnownDrive> Shell::said_of(Run& run, Session& session, const Ident
   const auto change = show::change_of((*known)->identity, identity);
   if (change.empty()) return std::move(*known);
   const auto removed = file.remove();
-  run.context.notices.push_back(
-      formatted("node {} is not the drive that was said to be {}: {} is another; {}", identity.node,
-                (*known)->family, change, removed ? "that is forgotten" : removed.error().message));
+  run.context.notices.push_back(message("node {} is not the drive that was said to be {}: {} is another; {}",
+                                        node_name(identity.node), (*known)->family, change,
+                                        removed ? "that is forgotten" : removed.error().message));
   return std::nullopt;
 }
 
@@ -136,8 +137,8 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
     if (!identity) return fail(identity.error());
     if (const auto said = said_of(run, session, *identity)) {
       run.context.notices.push_back(
-          formatted("node {} is taken for {}, as said with -d at {} for the drive of this identity", node,
-                    said->family, said->time));
+          message("node {} is taken for {}, as said with -d at {} for the drive of this identity",
+                  node_name(node), said->family, said->time));
       found = families_.emplace(key, FoundFamily{said->family, false}).first;
     } else {
       const auto [fits, proven] = suggested(session, *identity, drive::find_families(options_.drive_folders));
@@ -148,10 +149,10 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
                                     "agrees, add -d {}",
                                     node, one_of(fits), fits.front()));
       run.context.notices.push_back(
-          proven ? formatted("node {} is a {}: its identity proves it", node, fits.front())
-                 : formatted("node {} is taken for {}, which its identity fits: a guess, not proof; what "
-                             "writes or moves needs -d {}",
-                             node, fits.front(), fits.front()));
+          proven ? message("node {} is a {}: its identity proves it", node_name(node), fits.front())
+                 : message("node {} is taken for {}, which its identity fits: a guess, not proof; what "
+                           "writes or moves needs -d {}",
+                           node_name(node), fits.front(), fits.front()));
       found = families_.emplace(key, FoundFamily{fits.front(), !proven, {}, proven}).first;
     }
   }

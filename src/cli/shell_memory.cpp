@@ -39,8 +39,8 @@ constexpr Duration kGuardPatience = std::chrono::milliseconds(200);
 /// A stopped node answers no SDO.
 Error serial_not_read(const command::Command& command, const cabinet::Axis& axis, Error error) {
   if (error.code != Errc::timeout || !includes(command.needs, Needs::nmt)) return error;
-  error.message = formatted("its serial number cannot be checked: {}", error.message);
-  error.hint = formatted("`nmt preop -n {}` first, if the node is stopped", axis.node);
+  error.message = message("its serial number cannot be checked: {}", error.message);
+  error.hint = message("`nmt preop -n {}` first, if the node is stopped", node_name(axis.node));
   return error;
 }
 
@@ -68,9 +68,9 @@ void Shell::judge_writes(Run& run) {
     }
     std::string objects;
     for (const auto object : written) append(objects, to_string(object));
-    run.context.notices.push_back(formatted(
+    run.context.notices.push_back(message(
         "node {}: whether {} takes effect at once or after a restart is not known: its manual says it, or add -d FAMILY",
-        node, objects));
+        node_name(node), objects));
   }
 }
 
@@ -113,7 +113,7 @@ bool Shell::is_contradicted(Run& run, Session& session, const session::Identity&
   if (verdict.kind != session::FamilyVerdict::Kind::contradicted) return false;
   if (session.identities().is_news(identity.node, profile.family + "!"))
     run.context.notices.push_back(
-        formatted("node {}: not a {}: {}", identity.node, profile.family, verdict.why));
+        message("node {}: not a {}: {}", node_name(identity.node), as_it_is(profile.family), verdict.why));
   return true;
 }
 
@@ -139,7 +139,7 @@ void Shell::remember(Run& run, Session& session, std::uint8_t node) {
 void Shell::offer_turn(Run& run) {
   const auto& errors = run.context.errors;
   auto* session = run.context.session;
-  if (errors.empty() || errors.front().hint.find("--turn") == std::string::npos || !run.turn.empty() ||
+  if (errors.empty() || errors.front().hint.text().find("--turn") == std::string::npos || !run.turn.empty() ||
       session == nullptr || options_.state_folder.empty() || run.context.nodes.size() != 1)
     return;
   const auto node = run.context.nodes.front();
@@ -147,9 +147,9 @@ void Shell::offer_turn(Run& run) {
   if (!known || !*known || (*known)->turn.empty()) return;
   const auto identity = session::read_identity(*session, node);
   if (!identity || !show::change_of((*known)->identity, *identity).empty()) return;
-  run.context.notices.push_back(formatted(
-      "--turn {} was given for this drive at {}: add it if motor, encoder and gear are those of then",
-      (*known)->turn, (*known)->time));
+  run.context.notices.push_back(
+      message("--turn {} was given for this drive at {}: add it if motor, encoder and gear are those of then",
+              (*known)->turn, (*known)->time));
 }
 
 /// Before something is changed: the drive of an axis is the one that the file says, where it says its serial

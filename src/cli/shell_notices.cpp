@@ -34,15 +34,18 @@ void blame_second_node(session::Session& session, Error& error) {
 
 using command::Needs;
 
-std::vector<std::string> Shell::take_notices(const drive::Profile* profile, bool chinese) {
-  std::vector<std::string> out;
+std::vector<Message> Shell::take_notices(const drive::Profile* profile, bool chinese) {
+  std::vector<Message> out;
   for (auto* session : bus_.sessions()) {
     const auto& names = bus_.names(*session);
-    for (const auto& notice : session->network().take_notices()) out.push_back(names.in(notice));
+    for (auto& notice : session->network().take_notices()) {
+      names.put_into(notice);
+      out.push_back(std::move(notice));
+    }
     // The family of the line says nothing of another bus.
     const auto* family = session == bus_.session() ? profile : nullptr;
     for (const auto& event : session->take_events()) {
-      auto text = names.in(show::notice_text(event, family, chinese, &session->network()));
+      Message text = names.in(show::notice_text(event, family, chinese, &session->network()));
       // Whoever looks anew at a node sees the same two again; other events may well come twice.
       const bool doubled = std::holds_alternative<session::NodeEvent::Doubled>(event.what);
       if (!doubled || std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));
@@ -79,7 +82,7 @@ bool Shell::tell_lost_bus(Run& run, bool met) {
   if (met)
     errors.push_back(heard.error());
   else
-    run.context.notices.push_back(formatted("{}, when what this line does was done", heard.error().message));
+    run.context.notices.push_back(message("{}, when what this line does was done", heard.error().message));
   return true;
 }
 
@@ -143,7 +146,7 @@ void Shell::tell_notices() {
   const auto family =
       settings.drive.empty() ? Result<const drive::Profile*>(nullptr) : profile(settings.drive);
   for (const auto& notice : take_notices(family ? *family : nullptr, settings.chinese))
-    console_->note("notice: " + printable(notice) + "\n");
+    console_->note("notice: " + printable(notice.text()) + "\n");
 }
 
 /// Who shows something, or asks, keeps no bus waiting.

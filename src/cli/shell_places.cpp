@@ -27,15 +27,16 @@ bool file_rivals_bus(const Settings& settings) {
 
 /// `-n all` beside a cabinet file means its axes only where the line goes by the file.
 void tell_all_of_bus(const command::Command& command, const Settings& settings,
-                     std::vector<std::string>& notices) {
+                     std::vector<Message>& notices) {
   if (!equals_nocase(settings.nodes, "all") || settings.bus.empty() || settings.bus_from == Source::line ||
       !includes(command.needs, Needs::node))
     return;
   std::error_code error;
   const auto file = cabinet::find_cabinet(std::filesystem::current_path(error));
   if (!file.empty())
-    notices.push_back(formatted("all: the nodes of {} ({}), not the axes of {}",
-                                name_of(settings.bus_from, "--bus"), settings.bus, file.string()));
+    notices.push_back(message("all: the nodes of {} ({}), not the axes of {}",
+                              name_of(settings.bus_from, "--bus"), as_it_is(settings.bus),
+                              as_it_is(file.string())));
 }
 
 /// What is shown while it runs, and what moves, is of one bus and family.
@@ -47,29 +48,29 @@ Result<void> check_several(const command::Command& command, const command::Argum
   if (!command.one_file.empty() && arguments.has(command.one_file))
     return fail(
         Errc::usage,
-        formatted(
+        message(
             "'{}' writes {} for axes of one bus and one family at a time; these are of {} buses or families",
-            command.path, arguments.text(command.one_file), parts.size()),
+            as_it_is(command.path), as_it_is(arguments.text(command.one_file)), parts.size()),
         command.path == "backup"
-            ? formatted("`cabinet backup` saves all axes; or a file each, such as -n {}", first)
-            : formatted("a file each, such as -n {}", first));
+            ? message("`cabinet backup` saves all axes; or a file each, such as -n {}", as_it_is(first))
+            : message("a file each, such as -n {}", as_it_is(first)));
   if (!command.goes_on && command.effect_with(arguments) != command::Effect::moves) return {};
   return fail(
       Errc::usage,
-      formatted("'{}' is for axes of one bus and one family at a time; these are of {} buses or families",
-                command.path, parts.size()),
+      message("'{}' is for axes of one bus and one family at a time; these are of {} buses or families",
+              as_it_is(command.path), parts.size()),
       first.empty()     ? "name the bus: --bus " + parts.front().settings.bus
-      : command.goes_on ? formatted("it listens to one bus as it comes in: such as -n {}, and the "
-                                    "others in another terminal",
-                                    first)
-                        : formatted("such as -n {}", first));
+      : command.goes_on ? message("it listens to one bus as it comes in: such as -n {}, and the "
+                                  "others in another terminal",
+                                  as_it_is(first))
+                        : message("such as -n {}", as_it_is(first)));
 }
 
 /// Bus and file contradict each other, and a drive is to be stopped: `all` are those of both, and numbers are
 /// nodes of the bus.
 Result<std::vector<LinePart>> ways_out(const cabinet::Cabinet& cabinet, const ParsedLine& line,
                                        const Settings& given, const Error& contradiction,
-                                       std::vector<std::string>& notices) {
+                                       std::vector<Message>& notices) {
   notices.push_back(contradiction.message);
   if (!equals_nocase(given.nodes, "all")) return std::vector<LinePart>();
   auto of_file = given;
@@ -101,7 +102,7 @@ std::vector<std::string> Shell::name_axes(std::vector<std::string> words, const 
 }
 
 Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const Settings& given,
-                                                   std::vector<std::string>& notices) {
+                                                   std::vector<Message>& notices) {
   const auto& command = *line.command;
   // Before a file that it names is read.
   if (const auto* restriction = Restriction::current())
@@ -117,7 +118,7 @@ Result<std::vector<LinePart>> Shell::parts_of_line(const ParsedLine& line, const
     return std::vector<LinePart>();
   const auto known = cabinet(given);
   if (!known && command.way_out && rivals) {
-    notices.push_back(formatted("the cabinet file is not used: {}", known.error().message));
+    notices.push_back(message("the cabinet file is not used: {}", known.error().message));
     return std::vector<LinePart>();
   }
   if (!known) return fail(known.error());
@@ -135,11 +136,11 @@ Result<Settings> Shell::settings_for_lines(Settings settings) {
   if (file_rivals_bus(settings)) {
     const auto known = cabinet(settings);
     if (!known) return fail(known.error());
-    std::vector<std::string> notices;
+    std::vector<Message> notices;
     auto settled = settle_bus(**known, std::move(settings), notices);
     if (!settled) return settled;
     settings = std::move(*settled);
-    for (const auto& notice : notices) console_->note("notice: " + notice + "\n");
+    for (const auto& notice : notices) console_->note("notice: " + notice.text() + "\n");
   }
   settings.keep_for_lines();
   return settings;

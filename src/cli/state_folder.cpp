@@ -30,7 +30,8 @@ StateFolder state_folder_as_it_is() {
   const auto own = check_own_folder(folder);
   if (own) return {folder, {}};
   return {{},
-          formatted("{}: nothing is kept or remembered there; {}", own.error().message, own.error().hint)};
+          formatted("{}: nothing is kept or remembered there; {}", own.error().message.text(),
+                    own.error().hint.text())};
 }
 
 StateFolder state_folder() {

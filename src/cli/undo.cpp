@@ -19,7 +19,7 @@ using WrittenLine = LastWrite::Line;
 
 /// `opening`: the present one of the bus. While it was not open restarts were not heard.
 Result<void> check_value(session::Session& session, std::uint64_t opening, const WrittenValue& value) {
-  const auto refused = [&](const std::string& why) {
+  const auto refused = [&](const Message& why) {
     return fail(
         drive_error(Errc::refused, value.node, why, "nothing was changed; `param set` writes it by hand"));
   };
@@ -28,13 +28,13 @@ Result<void> check_value(session::Session& session, std::uint64_t opening, const
   const auto identity = session::read_identity(session, value.node);
   if (!identity) return fail(identity.error());
   if (const auto change = show::change_of(value.identity, *identity); !change.empty())
-    return refused(formatted("is another drive than the one that was written to: {}", change));
+    return refused(message("is another drive than the one that was written to: {}", change));
   const auto now = session.upload(value.node, value.object);
   if (!now) return fail(now.error());
   // Where an undo was cut off behind its write it holds that already.
   if (*now != value.after && *now != value.before)
-    return refused(formatted("no longer holds in {} ({}) what was written: somebody has changed it since",
-                             value.name, to_string(value.object)));
+    return refused(message("no longer holds in {} ({}) what was written: somebody has changed it since",
+                           value.name, to_string(value.object)));
   return {};
 }
 
@@ -56,15 +56,15 @@ Result<void> check_line(Shell& shell, const WrittenLine& line) {
   auto settings = shell.defaults();
   if (!line.by_axis && url_in_use(shell) != session::canonical_url(line.bus))
     return fail(Errc::refused,
-                formatted("the last write was on {}, and the prompt is not there any more", line.bus),
-                formatted("`bus {}`, and then `undo`", line.bus));
+                message("the last write was on {}, and the prompt is not there any more", as_it_is(line.bus)),
+                message("`bus {}`, and then `undo`", as_it_is(line.bus)));
   if (settings.nodes != line.place)
     return fail(Errc::refused,
-                formatted("the last write was made with {} in use, and now {} is",
-                          line.place.empty() ? "no node" : line.place,
-                          settings.nodes.empty() ? "none" : settings.nodes),
+                message("the last write was made with {} in use, and now {} is",
+                        line.place.empty() ? "no node" : line.place,
+                        settings.nodes.empty() ? "none" : settings.nodes),
                 line.place.empty() ? "`param set` writes it by hand"
-                                   : formatted("`use {}`, and then `undo`", line.place));
+                                   : message("`use {}`, and then `undo`", as_it_is(line.place)));
   settings.bus = line.bus;
   settings.of_cabinet = line.of_cabinet;
   settings.names = line.names;

@@ -84,13 +84,13 @@ std::string hint_by_meaning(std::string_view word, std::string_view said) {
 
 /// Of a group that is there, a second word that is not.
 Error unknown_in_group(const std::string& said, std::span<const std::string> paths) {
-  auto hint = split(said, ' ').size() > 1 ? did_you_mean(said, paths) : std::string();
+  Message hint = split(said, ' ').size() > 1 ? did_you_mean(said, paths) : std::string();
   std::vector<std::string> quoted;
   for (const auto& path : paths) quoted.push_back(formatted("`{}`", path));
-  if (hint.empty() || switches_by_itself(said)) hint = formatted("use {}", one_of(quoted));
+  if (hint.empty() || switches_by_itself(said)) hint = message("use {}", one_of(quoted));
   if (switches_by_itself(said))
     hint = "each LSS command selects its slave by itself, and lets it go in the end; " + hint;
-  return make_error(Errc::usage, formatted("'{}' is not a command", said), std::move(hint));
+  return make_error(Errc::usage, message("'{}' is not a command", as_it_is(said)), std::move(hint));
 }
 
 }  // namespace
@@ -105,21 +105,21 @@ Error unknown_command(const std::vector<std::string>& words, std::size_t first) 
       in_group.emplace_back(command->path);
   if (!in_group.empty()) return unknown_in_group(said, in_group);
   if (goes_on && (word == "exit" || word == "quit"))
-    return make_error(Errc::usage, formatted("'{}' stands alone", word), {});
+    return make_error(Errc::usage, message("'{}' stands alone", as_it_is(word)), {});
   if (const auto* of_prompt = command::find_prompt_word(word); of_prompt != nullptr)
     return make_error(
-        Errc::usage, formatted("'{}' is a word of the prompt, and no command", of_prompt->name),
-        formatted("`servoctl` alone opens the prompt; `help {}` says what it does", of_prompt->name));
+        Errc::usage, message("'{}' is a word of the prompt, and no command", as_it_is(of_prompt->name)),
+        message("`servoctl` alone opens the prompt; `help {}` says what it does", as_it_is(of_prompt->name)));
   if (auto meaning = hint_by_meaning(word, said); !meaning.empty())
-    return make_error(Errc::usage, formatted("'{}' is not a command", word), std::move(meaning));
+    return make_error(Errc::usage, message("'{}' is not a command", as_it_is(word)), std::move(meaning));
   if (is_batch_word(word))
-    return make_error(Errc::usage, formatted("'{}' is a word of batch files, and no command", word),
+    return make_error(Errc::usage, message("'{}' is a word of batch files, and no command", as_it_is(word)),
                       "`run FILE` runs one; `help run` tells its words");
   const auto known = known_commands();
   auto hint = goes_on ? did_you_mean(said, known) : std::string();
   if (hint.empty()) hint = did_you_mean(word, known);
   if (hint.empty()) hint = "`help` lists the commands";
-  return make_error(Errc::usage, formatted("'{}' is not a command", word), std::move(hint));
+  return make_error(Errc::usage, message("'{}' is not a command", as_it_is(word)), std::move(hint));
 }
 
 }  // namespace servoctl::cli

@@ -15,8 +15,8 @@ class Splitter {
     for (at_ = 0; at_ < line_.size() && !comment_; ++at_)
       if (const auto taken = take(line_[at_]); !taken) return fail(taken.error());
     if (quote_ == '\0') return std::move(words_);
-    return fail(Errc::usage, formatted("the quote {} is not closed", quote_),
-                formatted("close it, or write \\{}", quote_));
+    return fail(Errc::usage, message("the quote {} is not closed", quote_),
+                message("close it, or write \\{}", quote_));
   }
 
  private:
@@ -81,7 +81,7 @@ Result<std::string> VariableExpansion::take(std::string_view line, std::size_t& 
   auto value = (*variables_)(name);
   if (value) filled_in_ += value->size();
   if (filled_in_ > kLongestLine)
-    return fail(Errc::usage, formatted("its variables make the line longer than {} MiB", kLongestLine >> 20U),
+    return fail(Errc::usage, message("its variables make the line longer than {} MiB", kLongestLine >> 20U),
                 "is a variable too long?");
   return value;
 }

@@ -10,11 +10,11 @@ Result<std::optional<Duration>> duration_option(const Arguments& arguments, std:
   auto time = read_duration(arguments.text(name));
   if (!time) {
     auto error = time.error();
-    error.message = formatted("{}: {}", name, error.message);
+    error.message = message("{}: {}", name, error.message);
     return fail(std::move(error));
   }
   if (*time == Duration::zero())
-    return fail(Errc::usage, formatted("{}: '{}' is too short", name, arguments.text(name)),
+    return fail(Errc::usage, message("{}: '{}' is too short", name, as_it_is(arguments.text(name))),
                 "write 500ms or 10s");
   return std::optional(*time);
 }

@@ -191,7 +191,7 @@ Result<std::string> help_text(std::string_view path, std::size_t width, bool chi
   for (const auto* command : registry()) names.emplace_back(command->path);
   for (const auto& word : prompt_words()) names.emplace_back(word.name);
   auto hint = did_you_mean(path, names);
-  return fail(Errc::usage, formatted("'{}' is not a command", path),
+  return fail(Errc::usage, message("'{}' is not a command", as_it_is(path)),
               hint.empty() ? "`help` lists the commands" : std::move(hint));
 }
 

@@ -11,7 +11,7 @@ Result<std::string> interface_argument(const Arguments& arguments) {
   auto name = session::canonical_url(arguments.text("interface"));
   if (name.find(':') != std::string::npos)
     return fail(
-        Errc::usage, formatted("{} is no CAN interface of the kernel", name),
+        Errc::usage, message("{} is no CAN interface of the kernel", name),
         name.starts_with("slcan:")
             ? "the bitrate of such an adapter stands behind the @ and is set when it is opened: `scan -b "
               "slcan:PORT@500k`"
@@ -24,8 +24,8 @@ Result<std::optional<std::uint32_t>> number_option(const Arguments& arguments, s
   if (!arguments.has(name)) return std::optional<std::uint32_t>();
   const auto number = parse_digits(arguments.text(name), 10);
   if (!number || *number < least || *number > most)
-    return fail(Errc::usage,
-                formatted("{}: '{}' is not a number from {} to {}", name, arguments.text(name), least, most));
+    return fail(Errc::usage, message("{}: '{}' is not a number from {} to {}", name,
+                                     as_it_is(arguments.text(name)), least, most));
   return std::optional(static_cast<std::uint32_t>(*number));
 }
 
@@ -35,9 +35,9 @@ Result<void> hold_energised(const Context& context, const std::string& name) {
   if (nodes.empty()) return {};
   return fail(
       Errc::refused,
-      formatted("{} stays as it is: node {} was left energised over it, and could not be stopped any more",
-                name, nodes.front()),
-      formatted("`disable -n {}` first", nodes.front()));
+      message("{} stays as it is: node {} was left energised over it, and could not be stopped any more",
+              name, node_name(nodes.front())),
+      message("`disable -n {}` first", node_name(nodes.front())));
 }
 
 std::string who_receives(const std::string& name) {

@@ -60,7 +60,8 @@ Result<std::optional<std::uint32_t>> lss_number(const Arguments& arguments, std:
   const auto number = parse_integer(arguments.text(name));
   const auto value = number ? number->as_unsigned() : std::nullopt;
   if (!value || *value > 0xFFFF'FFFFU)
-    return fail(Errc::usage, formatted("{}: '{}' is not a number of 32 bits", name, arguments.text(name)),
+    return fail(Errc::usage,
+                message("{}: '{}' is not a number of 32 bits", name, as_it_is(arguments.text(name))),
                 "write 1234 or 0x4D2; `scan --long` and `lss scan` show such numbers");
   return std::optional(static_cast<std::uint32_t>(*value));
 }
@@ -92,9 +93,9 @@ Result<LssChoice> lss_choice(Context& context, const Arguments& arguments) {
   const auto* chosen = numbers_given(arguments) == 0 && !context.nodes_typed ? selected(context) : nullptr;
   if (chosen != nullptr) {
     context.notices.push_back(
-        formatted("the LSS slave that was selected: vendor 0x{:08X}, product 0x{:08X}, "
-                  "revision 0x{:08X}, serial {}",
-                  chosen->vendor, chosen->product, chosen->revision, chosen->serial));
+        message("the LSS slave that was selected: vendor 0x{:08X}, product 0x{:08X}, "
+                "revision 0x{:08X}, serial {}",
+                chosen->vendor, chosen->product, chosen->revision, chosen->serial));
     return LssChoice{*chosen};
   }
   if (numbers_given(arguments) == 0) {

@@ -23,7 +23,8 @@ Result<motion::PanelValues> panel_values(std::string_view text) {
     const auto number =
         equals == std::string_view::npos ? std::nullopt : parse_signed(part.substr(equals + 1));
     if (!number || equals == 0)
-      return fail(Errc::usage, formatted("--panel: '{}' is not NAME=VALUE", part), "such as --panel PA-20=0");
+      return fail(Errc::usage, message("--panel: '{}' is not NAME=VALUE", as_it_is(part)),
+                  "such as --panel PA-20=0");
     out[std::string(part.substr(0, equals))] = *number;
   }
   return out;
@@ -50,7 +51,7 @@ Result<motion::MotionOptions> motion_options(const Context& context, const Argum
     if (!arguments.has(name)) continue;
     const auto counts = number(arguments, name);
     if (!counts || *counts == 0)
-      return fail(Errc::usage, formatted("'{}' is not a number of counts", arguments.text(name)),
+      return fail(Errc::usage, message("'{}' is not a number of counts", as_it_is(arguments.text(name))),
                   "such as 131072 for 17 bits");
     *place = static_cast<double>(*counts);
   }
@@ -62,7 +63,7 @@ Result<motion::MotionOptions> motion_options(const Context& context, const Argum
   if (!arguments.has("--master-node")) return out;
   const auto id = number(arguments, "--master-node");
   if (!id || *id < canopen::kFirstNode || *id > canopen::kLastNode)
-    return fail(Errc::usage, formatted("'{}' is not a node-ID", arguments.text("--master-node")),
+    return fail(Errc::usage, message("'{}' is not a node-ID", as_it_is(arguments.text("--master-node"))),
                 "write 1..127");
   out.producer = static_cast<std::uint8_t>(*id);
   return out;

@@ -46,14 +46,14 @@ bool is_confirmed(session::Session& session, const NodeLife& before, NmtCommand 
 Error unconfirmed(const NodeLife& before, NmtCommand command, const session::Heartbeats& heartbeats,
                   const canopen::NodeWatch& watch) {
   auto error = drive_error(Errc::timeout, before.node,
-                           formatted("'{}' was sent but not confirmed", canopen::name(command)));
+                           message("'{}' was sent but not confirmed", as_it_is(canopen::name(command))));
   const auto& silent = heartbeats.silent;
   if (is_reset(command))
     error.hint =
         "no boot-up message: it may have restarted with another node-ID or bitrate; `scan` shows who answers";
   else if (std::find(silent.begin(), silent.end(), before.node) != silent.end())
-    error.hint =
-        formatted("the node sends no heartbeat: `heartbeat set 500ms -n {}` switches it on", before.node);
+    error.hint = message("the node sends no heartbeat: `heartbeat set 500ms -n {}` switches it on",
+                         node_name(before.node));
   else if (watch.heartbeats(before.node) > before.heartbeats)
     error.hint = "its heartbeats still show another state";
   else
@@ -100,8 +100,8 @@ void tell_reset(Context& context, std::span<const NodeLife> before, NmtCommand c
   for (const auto& entry : before)
     if (waited && is_confirmed(*context.session, entry, NmtCommand::reset_communication))
       context.notices.push_back(
-          formatted("node {}: by CiA 301 1000h to 1FFFh now have their power-on values: {} are lost",
-                    entry.node, kSetAndNotStored));
+          message("node {}: by CiA 301 1000h to 1FFFh now have their power-on values: {} are lost",
+                  node_name(entry.node), kSetAndNotStored));
     else
       unseen = true;
   if (unseen) context.notices.push_back(communication_goes());

@@ -165,11 +165,12 @@ class Collection {
     if (node) inner.nodes.push_back(*node);
     auto result = ask(inner);
     if (!result) inner.errors.push_back(result.error());
-    trial::ReportPart out{std::move(id), std::move(title), {}, std::move(inner.notices)};
+    trial::ReportPart out{std::move(id), std::move(title), {}, {}};
+    for (const auto& notice : inner.notices) out.remarks.push_back(notice.text());
     for (auto& error : inner.errors) {
       if (error.code == Errc::bus || error.code == Errc::interrupted) return fail(std::move(error));
       if (error.code == Errc::negative) continue;
-      out.remarks.push_back(error.message);
+      out.remarks.push_back(error.message.text());
       context_->errors.push_back(std::move(error));
     }
     if (result) out.value = std::move(*result);

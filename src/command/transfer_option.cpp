@@ -31,12 +31,12 @@ Transfer read_transfer(const Context& context, const Arguments& arguments, bool 
 Result<Transfer> write_transfer(const Context& context, const Arguments& arguments, std::size_t size) {
   const auto given = given_transfer(arguments);
   if (given == Transfer::expedited && (size == 0 || size > 4))
-    return fail(Errc::usage, formatted("{} bytes cannot be sent expedited", size),
+    return fail(Errc::usage, message("{} bytes cannot be sent expedited", size),
                 "it takes 1 to 4 bytes; leave --transfer out");
   if (given != Transfer::automatic || size <= 4) return given;
   if (context.profile != nullptr && !context.profile->rules.sdo.segmented)
     return fail(Errc::usage,
-                formatted("{} accepts at most 4 bytes per write, not {}", context.profile->family, size),
+                message("{} accepts at most 4 bytes per write, not {}", context.profile->family, size),
                 "--transfer segmented or block tries it anyway");
   return knows_block(context) ? Transfer::automatic : Transfer::segmented;
 }

@@ -15,7 +15,8 @@ Result<double> number_option(const Arguments& arguments, std::string_view name, 
   if (!arguments.has(name)) return otherwise;
   const auto number = parse_real(arguments.text(name));
   if (!number || *number < 0)
-    return fail(Errc::usage, formatted("{}: '{}' is not a number of 0 or more", name, arguments.text(name)));
+    return fail(Errc::usage,
+                message("{}: '{}' is not a number of 0 or more", name, as_it_is(arguments.text(name))));
   return *number;
 }
 
@@ -55,8 +56,8 @@ Result<std::uint32_t> count_option(const Arguments& arguments, std::string_view 
   if (!arguments.has(name)) return otherwise;
   const auto number = parse_digits(arguments.text(name), 10);
   if (!number || *number < least || *number > most)
-    return fail(Errc::usage,
-                formatted("{}: '{}' is not a number from {} to {}", name, arguments.text(name), least, most));
+    return fail(Errc::usage, message("{}: '{}' is not a number from {} to {}", name,
+                                     as_it_is(arguments.text(name)), least, most));
   return static_cast<std::uint32_t>(*number);
 }
 

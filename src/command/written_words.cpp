@@ -15,7 +15,7 @@ Result<void> check_time(const Command& command, const Parameter& parameter, cons
   }
   const auto time = read_duration(arguments.text(parameter.name));
   if (time) return {};
-  return fail(Errc::usage, formatted("{}: {}", parameter.name, time.error().message), time.error().hint);
+  return fail(Errc::usage, message("{}: {}", parameter.name, time.error().message), time.error().hint);
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ Result<void> check_written(const Command& command, const Arguments& arguments) {
     if (parameter.kind != Kind::number) continue;
     for (const auto& text : arguments.all(parameter.name))
       if (!parse_integer(text) && !parse_real(text))
-        return fail(Errc::usage, formatted("{}: '{}' is not a number", parameter.name, text));
+        return fail(Errc::usage, message("{}: '{}' is not a number", parameter.name, as_it_is(text)));
   }
   return {};
 }

@@ -36,7 +36,7 @@ std::vector<Code> codes_of(const Profile& profile) {
 
 Result<std::uint32_t> parse_bitrate(std::string_view text) {
   const auto wrong = [&] {
-    return fail(Errc::usage, formatted("'{}' is not a bitrate of CAN", text),
+    return fail(Errc::usage, message("'{}' is not a bitrate of CAN", as_it_is(text)),
                 "10k to 1M: 125k, 250k, 500k, 1M");
   };
   const auto word = lower(trim(text));
@@ -78,21 +78,22 @@ std::optional<std::uint32_t> bitrate_of_code(const Profile& profile, std::int64_
 Result<std::int64_t> bitrate_code(const Profile& profile, std::uint32_t bitrate) {
   const auto& name = profile.rules.nmt.bitrate;
   if (name.empty())
-    return fail(Errc::usage, formatted("no parameter of a {} is known that sets its bitrate", profile.family),
+    return fail(Errc::usage,
+                message("no parameter of a {} is known that sets its bitrate", as_it_is(profile.family)),
                 "look into its manual: switches, its panel, or the vendor's software");
   const auto codes = codes_of(profile);
   if (codes.empty())
-    return fail(
-        Errc::usage,
-        formatted("which bitrates the codes of {} stand for is not known of a {}", name, profile.family),
-        formatted("its manual prints none; `read {}` shows the present code", name));
+    return fail(Errc::usage,
+                message("which bitrates the codes of {} stand for is not known of a {}", name,
+                        as_it_is(profile.family)),
+                message("its manual prints none; `read {}` shows the present code", as_it_is(name)));
   const auto found =
       std::find_if(codes.begin(), codes.end(), [&](const Code& code) { return code.bitrate == bitrate; });
   if (found != codes.end()) return found->value;
   std::vector<std::string> known;
   for (const auto each : bitrates_of(profile)) known.push_back(bitrate_text(each));
-  return fail(Errc::usage, formatted("a {} has no {}", profile.family, bitrate_text(bitrate)),
-              formatted("it has {}", fmt::join(known, ", ")));
+  return fail(Errc::usage, message("a {} has no {}", as_it_is(profile.family), bitrate_text(bitrate)),
+              message("it has {}", fmt::join(known, ", ")));
 }
 
 }  // namespace servoctl::drive

@@ -113,9 +113,9 @@ Result<void> check_family_file(const fs::path& file) {
   if (std::any_of(named.begin(), named.end(), holds) || std::none_of(found.begin(), found.end(), holds))
     return {};
   return check_found_file(file,
-                          formatted("nothing of these drive data was used; if you trust them, name their "
-                                    "folder: SERVOCTL_DRIVES={}",
-                                    file.parent_path().string()),
+                          message("nothing of these drive data was used; if you trust them, name their "
+                                  "folder: SERVOCTL_DRIVES={}",
+                                  as_it_is(file.parent_path().string())),
                           owner_of_program());
 }
 
@@ -152,8 +152,9 @@ Result<void> check_parents(const Family& family, std::span<const fs::path> folde
     chain += " → " + parent;
     if (std::find(seen.begin(), seen.end(), parent) != seen.end())
       return fail(Errc::file,
-                  formatted("{}: parent = \"{}\": the parents form a loop: {}",
-                            formatted("{}.toml", family.stem.filename().string()), first, chain),
+                  message("{}: parent = \"{}\": the parents form a loop: {}",
+                          message("{}.toml", as_it_is(family.stem.filename().string())), as_it_is(first),
+                          as_it_is(chain)),
                   "name a parent that does not descend from this family");
     seen.push_back(parent);
     at = find_family(families, parent);

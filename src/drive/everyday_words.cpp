@@ -53,7 +53,7 @@ std::vector<EverydayWords> read_everyday_words(std::string_view csv, std::string
                                                std::vector<Error>& errors) {
   const auto table = read_csv(csv, file, errors);
   std::vector<EverydayWords> out;
-  const auto wrong = [&](std::uint32_t line, std::string_view what) {
+  const auto wrong = [&](std::uint32_t line, const Message& what) {
     errors.push_back(file_error(file, line, what));
   };
   if (table.columns != std::vector<std::string>{"thing", "words", "manual"}) {
@@ -65,7 +65,7 @@ std::vector<EverydayWords> read_everyday_words(std::string_view csv, std::string
     if (words.name.empty()) wrong(row.line, "'thing' is missing");
     if (!row.cells[2].empty() && !words.absent) wrong(row.line, "'manual' is none, or empty");
     if (std::any_of(out.begin(), out.end(), [&](const auto& each) { return each.name == words.name; }))
-      wrong(row.line, formatted("'{}' appears twice", words.name));
+      wrong(row.line, message("'{}' appears twice", as_it_is(words.name)));
     for (const auto word : split(std::string_view(row.cells[1]), ';'))
       if (const auto bare = trim(word); !bare.empty()) words.words.emplace_back(bare);
     out.push_back(std::move(words));

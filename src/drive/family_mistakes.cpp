@@ -106,17 +106,18 @@ class FamilyCheck {
         profile_ = std::move(*loaded);
       else
         errors_.push_back(make_error(loaded.error().code,
-                                     formatted("{}: parent: {}", name, loaded.error().message),
+                                     message("{}: parent: {}", as_it_is(name), loaded.error().message),
                                      loaded.error().hint));
       profile_.family = family_->name;
     }
     profile_.rules = read_rules(rules_text_, name, std::move(profile_.rules), errors_);
     const auto& family = profile_.rules.family;
     if (!family.empty() && !equals_nocase(family, family_->name))
-      errors_.push_back(make_error(Errc::file, formatted("{}: family = \"{}\"", name, family),
-                                   formatted("the files are called {0}.*: write family = \"{0}\", or rename "
-                                             "them",
-                                             family_->name)));
+      errors_.push_back(make_error(Errc::file,
+                                   message("{}: family = \"{}\"", as_it_is(name), as_it_is(family)),
+                                   message("the files are called {0}.*: write family = \"{0}\", or rename "
+                                           "them",
+                                           as_it_is(family_->name))));
     note_errors(name);
   }
 
@@ -127,9 +128,9 @@ class FamilyCheck {
       const auto name = name_of(end);
       if (!fs::exists(path_of(end), ignored)) continue;
       if (std::exchange(used, true)) {
-        out_.push_back({name, std::nullopt, false, formatted("{} is not used", name),
-                        formatted("one data sheet is used, the first of {0}.eds, {0}.dcf and {0}.xml",
-                                  family_->stem.filename().string())});
+        out_.push_back({name, std::nullopt, false, message("{} is not used", as_it_is(name)),
+                        message("one data sheet is used, the first of {0}.eds, {0}.dcf and {0}.xml",
+                                as_it_is(family_->stem.filename().string()))});
         continue;
       }
       const auto text = text_of(end);
@@ -145,7 +146,7 @@ class FamilyCheck {
     }
     for (const auto& finding : file->diagnostics)
       out_.push_back({name, finding.line, false,
-                      formatted("{}:{}:{}: {}", name, finding.line, finding.column, finding.message),
+                      message("{}:{}:{}: {}", as_it_is(name), finding.line, finding.column, finding.message),
                       finding.remedy});
     has_sheet_ = true;
     take_sheet(profile_, *file);
@@ -196,20 +197,22 @@ class FamilyCheck {
     if (!has_sheet_ || !parameter.object) return;
     const auto name = name_of(".params.csv");
     const auto* entry = profile_.dictionary.find(*parameter.object);
-    const auto wrong = [&](const std::string& what, std::string hint) {
+    const auto wrong = [&](const Message& what, Message hint) {
       errors_.push_back(file_error(name, parameter.file_line, what, std::move(hint)));
     };
     if (entry == nullptr) {
       const auto* object = profile_.dictionary.object(parameter.object->index);
-      wrong(formatted("{}: object {} is not in the data sheet", parameter.id, to_string(*parameter.object)),
+      wrong(message("{}: object {} is not in the data sheet", as_it_is(parameter.id),
+                    to_string(*parameter.object)),
             object == nullptr || object->entries.empty()
-                ? "correct the object, or leave it empty if the bus does not reach the parameter"
-                : formatted("0x{:04X} has the sub-indexes {} to {}", object->index,
-                            object->entries.front().address.sub, object->entries.back().address.sub));
+                ? Message("correct the object, or leave it empty if the bus does not reach the parameter")
+                : message("0x{:04X} has the sub-indexes {} to {}", object->index,
+                          object->entries.front().address.sub, object->entries.back().address.sub));
     } else if (entry->type != parameter.type) {
-      wrong(formatted("{}: type {}, but {} is {} in the data sheet", parameter.id, od::name(parameter.type),
-                      to_string(*parameter.object), od::name(entry->type)),
-            formatted("write {} if the data sheet is right", od::name(entry->type)));
+      wrong(message("{}: type {}, but {} is {} in the data sheet", as_it_is(parameter.id),
+                    as_it_is(od::name(parameter.type)), to_string(*parameter.object),
+                    as_it_is(od::name(entry->type))),
+            message("write {} if the data sheet is right", as_it_is(od::name(entry->type))));
     }
   }
 
@@ -226,8 +229,8 @@ class FamilyCheck {
     for (const auto end : kFileEnds) known.push_back(stem + std::string(end));
     for (const auto& name : names)
       if (name.starts_with(stem + ".") && std::find(known.begin(), known.end(), name) == known.end())
-        out_.push_back(
-            {name, std::nullopt, false, formatted("{} is not read", name), did_you_mean(name, known)});
+        out_.push_back({name, std::nullopt, false, message("{} is not read", as_it_is(name)),
+                        did_you_mean(name, known)});
   }
 
   /// What only the whole family shows.

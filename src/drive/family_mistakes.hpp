@@ -14,9 +14,9 @@ namespace servoctl::drive {
 struct Mistake {
   std::string file;  ///< Without its folder.
   std::optional<std::uint32_t> line;
-  bool breaks = true;   ///< False: the family works; something of the file is not used, or taken otherwise.
-  std::string message;  ///< `p10.toml:14:1: unknown key 'waers'`
-  std::string remedy;   ///< What would be right; empty where the message says it.
+  bool breaks = true;  ///< False: the family works; something of the file is not used, or taken otherwise.
+  Message message;     ///< `p10.toml:14:1: unknown key 'waers'`
+  Message remedy;      ///< What would be right; empty where the message says it.
 };
 
 /// Everything that is wrong in all files of a family, file by file and by line; empty: it is sound. Of a file

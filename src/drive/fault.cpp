@@ -20,7 +20,8 @@ constexpr std::array<std::string_view, 12> kColumns{"code",       "extra",   "pa
 
 Error bad_cell(std::string_view file, std::uint32_t line, std::string_view column, std::string_view cell,
                std::string_view expected) {
-  return file_error(file, line, formatted("column {}: '{}' is not {}", column, cell, expected));
+  return file_error(file, line,
+                    message("column '{}': '{}' is not {}", as_it_is(column), as_it_is(cell), expected));
 }
 
 /// `0x2310`, `2310h`. Bare digits could be decimal or hexadecimal.
@@ -37,7 +38,7 @@ Error bad_code(std::string_view file, std::uint32_t line, std::string_view text)
   constexpr std::size_t kDigits = 4;
   if (const auto decimal = parse_digits(text, 10); decimal && text.size() <= kDigits)
     out.hint =
-        formatted("write 0x{} if these digits are hexadecimal, 0x{:04X} if they are decimal", text, *decimal);
+        message("write 0x{} if these digits are hexadecimal, 0x{:04X} if they are decimal", text, *decimal);
   return out;
 }
 
@@ -113,7 +114,7 @@ class KnownFaults {
     const auto [first, is_new] = lines_.emplace(std::tuple(code, fault.extra, fault.panel), line);
     if (is_new || shown.empty()) return true;
     errors_->push_back(file_error(
-        file_, line, formatted("{} is in line {} as well", shown, first->second),
+        file_, line, message("{} is in line {} as well", as_it_is(shown), first->second),
         "write all causes of a fault into one row, or tell the rows apart by code, extra or panel"));
     return false;
   }

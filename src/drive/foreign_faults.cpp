@@ -94,10 +94,10 @@ class FaultConversion {
       has_codes_ = has_codes_ || family_code(table_->cell(cells, "code"), false).has_value();
     for (const auto& cells : table_->rows()) take(cells);
     if (displayed_line_ != 0)
-      out_.notices.push_back(formatted(
+      out_.notices.push_back(message(
           "{}:{}: what column '{}' has without 0x or h is taken as what the panel shows; codes of 603Fh are "
           "written 0x8611",
-          file_, displayed_line_, table_->heading("code")));
+          as_it_is(file_), displayed_line_, as_it_is(table_->heading("code"))));
     auto aligned = std::string(kFaultHeader) + "\n";
     out_.csv = aligned;
     std::uint32_t line = 2;
@@ -118,7 +118,7 @@ class FaultConversion {
     if (ForeignTable::filled(cells) == 0) return;
     if (ForeignTable::is_title(cells)) {
       out_.notices.push_back(
-          formatted("{}:{}: left out: a line with its first cell alone", file_, cells.line));
+          message("{}:{}: left out: a line with its first cell alone", as_it_is(file_), cells.line));
       return;
     }
     FaultRow row{cells.line,
@@ -145,10 +145,12 @@ class FaultConversion {
     } else if (canopen_) {
       row.code = text;  // The reader says what is wrong.
     } else if (!row.panel.empty()) {
-      wrong(row.line, formatted("'{}' is no code of 603Fh, and the panel shows '{}'", text, row.panel),
-            "write the code as 0x8611");
+      wrong(
+          row.line,
+          message("'{}' is no code of 603Fh, and the panel shows '{}'", as_it_is(text), as_it_is(row.panel)),
+          "write the code as 0x8611");
     } else if (may_be_code(text)) {
-      wrong(row.line, formatted("'{}' may be a code of 603Fh or what the panel shows", text),
+      wrong(row.line, message("'{}' may be a code of 603Fh or what the panel shows", as_it_is(text)),
             "write one code in a row, as 0x8611; write what the panel shows into a column 'panel'");
     } else {
       row.panel = text;
@@ -161,7 +163,7 @@ class FaultConversion {
     return lower(text).find("0x") != std::string::npos || (has_codes_ && family_code(text, true).has_value());
   }
 
-  void wrong(std::uint32_t line, const std::string& what, std::string hint) {
+  void wrong(std::uint32_t line, const Message& what, Message hint) {
     errors_->push_back(file_error(file_, line, what, std::move(hint)));
   }
 
@@ -184,9 +186,10 @@ ConvertedTable convert_faults(std::string_view bytes, std::string_view file, std
   const bool loose =
       std::find(std::begin(kPanelLoose), std::end(kPanelLoose), heading) != std::end(kPanelLoose);
   if (errors.size() == before && loose && table.counts_rows("panel"))
-    errors.push_back(file_error(file, table.heading_line(),
-                                formatted("the column '{}' counts the rows: 1, 2, 3", table.heading("panel")),
-                                "remove it; name it 'panel' if the panel shows these numbers"));
+    errors.push_back(
+        file_error(file, table.heading_line(),
+                   message("the column '{}' counts the rows: 1, 2, 3", as_it_is(table.heading("panel"))),
+                   "remove it; name it 'panel' if the panel shows these numbers"));
   if (errors.size() != before) return {};
   auto out = FaultConversion(table, file, errors).run();
   table.finish(file, before, errors, out);

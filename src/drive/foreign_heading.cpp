@@ -150,7 +150,7 @@ std::string folded_heading(std::string_view text) {
 ForeignTable::ForeignTable(std::string_view bytes, std::string_view file, std::span<const Heading> headings,
                            std::vector<Error>& errors) {
   if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xD0\xCF\x11\xE0")) {
-    errors.push_back(make_error(Errc::file, formatted("{} is a spreadsheet, and no text", file),
+    errors.push_back(make_error(Errc::file, message("{} is a spreadsheet, and no text", as_it_is(file)),
                                 "save the sheet with the table as CSV, and name that file"));
     return;
   }
@@ -162,8 +162,9 @@ ForeignTable::ForeignTable(std::string_view bytes, std::string_view file, std::s
     constexpr std::size_t kShown = 4;
     for (const auto& heading : headings.first(std::min(headings.size(), kShown)))
       append(known, formatted("'{}'", heading.exact.front()));
-    errors.push_back(file_error(file, 1, "no line with column headings was found",
-                                formatted("a table begins with a line of headings, such as {}", known)));
+    errors.push_back(
+        file_error(file, 1, "no line with column headings was found",
+                   message("a table begins with a line of headings, such as {}", as_it_is(known))));
     return;
   }
   // Titles above the headings count as lines and are nothing else.
@@ -190,10 +191,11 @@ void ForeignTable::name_columns(std::span<const Heading> headings, std::string_v
           break;
         }
         if (!only) continue;
-        errors.push_back(file_error(file, heading_line_,
-                                    formatted("'{}' and '{}' are headings of one column, {}",
-                                              heading(one.column), table_.columns[i], one.column),
-                                    "keep one of the two columns"));
+        errors.push_back(
+            file_error(file, heading_line_,
+                       message("'{}' and '{}' are headings of one column, {}", as_it_is(heading(one.column)),
+                               as_it_is(table_.columns[i]), as_it_is(one.column)),
+                       "keep one of the two columns"));
         break;
       }
     }
@@ -214,17 +216,19 @@ void ForeignTable::check_headings(std::span<const Heading> headings, std::string
     });
     if (names_base(text))
       errors.push_back(file_error(
-          file, heading_line_, formatted("'{}': the base of numbers is not read from a heading", text),
+          file, heading_line_,
+          message("'{}': the base of numbers is not read from a heading", as_it_is(text)),
           "write hexadecimal numbers as 0x1F, decimal ones without a prefix, and take the base out of the "
           "heading"));
     else if (number && has_bracket(text) && !is_harmless(text))
       errors.push_back(file_error(file, heading_line_,
-                                  formatted("'{}': text in brackets over numbers is not read", text),
+                                  message("'{}': text in brackets over numbers is not read", as_it_is(text)),
                                   "take it out of the heading; write units into a column 'unit'"));
     else if (const auto mark = unread_mark(text); number && !mark.empty())
-      errors.push_back(file_error(file, heading_line_,
-                                  formatted("'{}': the mark {} over numbers is not read", text, mark),
-                                  "take it out of the heading; write units into a column 'unit'"));
+      errors.push_back(
+          file_error(file, heading_line_,
+                     message("'{}': the mark {} over numbers is not read", as_it_is(text), as_it_is(mark)),
+                     "take it out of the heading; write units into a column 'unit'"));
   }
 }
 
@@ -237,13 +241,13 @@ void ForeignTable::check_rows(std::string_view file, std::vector<Error>& errors)
     while (used > 0 && trim(row.cells[used - 1]).empty()) --used;
     if (used > names_.size())
       errors.push_back(
-          file_error(file, row.line, formatted("{} cells, {} headings", used, names_.size()),
+          file_error(file, row.line, message("{} cells, {} headings", used, names_.size()),
                      "give each column a heading; put a cell that holds the separator in quotes"));
     row.cells.resize(names_.size());
     for (std::size_t i = 0; i < names_.size(); ++i)
       if (trim(table_.columns[i]).empty() && !trim(row.cells[i]).empty())
         errors.push_back(file_error(file, row.line,
-                                    formatted("column {} has no heading: '{}'", i + 1, row.cells[i]),
+                                    message("column {} has no heading: '{}'", i + 1, as_it_is(row.cells[i])),
                                     "give the column a heading, or remove it"));
   }
   if (filled_rows == 0)
@@ -289,8 +293,8 @@ void ForeignTable::finish(std::string_view file, std::size_t first_error, std::v
   std::stable_sort(errors.begin() + static_cast<std::ptrdiff_t>(first_error), errors.end(),
                    [](const Error& a, const Error& b) { return a.line.value_or(0) < b.line.value_or(0); });
   for (const auto& heading : unknown_)
-    out.notices.push_back(
-        formatted("{}:{}: column '{}' is not understood and left out", file, heading_line_, heading));
+    out.notices.push_back(message("{}:{}: column '{}' is not understood and left out", as_it_is(file),
+                                  heading_line_, as_it_is(heading)));
 }
 
 bool ForeignTable::is_title(const CsvTable::Row& row) {

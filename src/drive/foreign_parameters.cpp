@@ -40,7 +40,7 @@ class ParameterConversion {
   }
 
  private:
-  void wrong(std::uint32_t line, const std::string& what, std::string hint) {
+  void wrong(std::uint32_t line, const Message& what, Message hint) {
     errors_->push_back(file_error(file_, line, what, std::move(hint)));
   }
 
@@ -49,7 +49,7 @@ class ParameterConversion {
     if (ForeignTable::filled(cells) == 0) return;
     if (ForeignTable::is_title(cells)) {
       out_.notices.push_back(
-          formatted("{}:{}: left out: a line with its first cell alone", file_, cells.line));
+          message("{}:{}: left out: a line with its first cell alone", as_it_is(file_), cells.line));
       return;
     }
     ForeignRow row;
@@ -61,8 +61,8 @@ class ParameterConversion {
     if (is_changed_by_spreadsheet(row.id))
       return wrong(
           row.line,
-          formatted("'{}' is a date or a rounded number, perhaps made of a parameter number by a spreadsheet",
-                    row.id),
+          message("'{}' is a date or a rounded number, perhaps made of a parameter number by a spreadsheet",
+                  as_it_is(row.id)),
           "format the column as text before the table is pasted, and write the number as the manual does");
     object(row, cell("object"), cell("sub"));
     if (row.id.empty()) row.id = row.object;
@@ -80,7 +80,8 @@ class ParameterConversion {
   /// By its object, else by the number that the data sheet has in the names.
   void object(ForeignRow& row, const std::string& index, const std::string& sub) {
     if (index.empty() && !sub.empty())
-      return wrong(row.line, formatted("sub-index {} without an index", sub), "write the index in each row");
+      return wrong(row.line, message("sub-index {} without an index", as_it_is(sub)),
+                   "write the index in each row");
     if (index.empty()) {
       const auto known = makers_.find(canonical_id(row.id));
       if (known == makers_.end()) return;
@@ -92,16 +93,17 @@ class ParameterConversion {
     row.object = named.text;
     if (!named.address) return;  // The reader says so.
     if (!named.doubtful.empty())
-      return wrong(
-          row.line, formatted("sub-index '{}' may be decimal or hexadecimal", named.doubtful),
-          formatted("write 0x{} or 0x{:02X}", named.doubtful, parse_digits(named.doubtful, 10).value_or(0)));
+      return wrong(row.line,
+                   message("sub-index '{}' may be decimal or hexadecimal", as_it_is(named.doubtful)),
+                   message("write 0x{} or 0x{:02X}", as_it_is(named.doubtful),
+                           parse_digits(named.doubtful, 10).value_or(0)));
     const auto* whole = dictionary_->object(named.address->index);
     const bool parts =
         whole != nullptr && (whole->entries.size() > 1 || whole->code == od::ObjectCode::array ||
                              whole->code == od::ObjectCode::record);
     if (parts && !named.has_sub)
       return wrong(row.line,
-                   formatted("object 0x{:04X} has several entries, and no sub-index is given", whole->index),
+                   message("object 0x{:04X} has several entries, and no sub-index is given", whole->index),
                    "write the sub-index");
     row.entry = dictionary_->find(*named.address);
   }
@@ -110,14 +112,14 @@ class ParameterConversion {
     const auto known = family_unit(unit);
     if (!known)
       return wrong(
-          row.line, formatted("the unit '{}' is not understood", unit),
+          row.line, message("the unit '{}' is not understood", as_it_is(unit)),
           "write a factor with a point, and the unit: 0.1 Hz; or the factor in a column 'scale' (value = "
           "raw × scale)");
     row.unit = known->second;
     row.scale = scale.empty() ? known->first : scale;
     if (parse_real(row.scale) == 1.0) row.scale.clear();
     if (!scale.empty() && !known->first.empty() && parse_real(scale) != parse_real(known->first))
-      wrong(row.line, formatted("the scale is {}, but the unit is '{}'", scale, unit),
+      wrong(row.line, message("the scale is {}, but the unit is '{}'", as_it_is(scale), as_it_is(unit)),
             "write the factor once");
   }
 
@@ -127,7 +129,7 @@ class ParameterConversion {
       if (const auto list = family_labels(text))
         own = *list;
       else
-        wrong(row.line, formatted("the list '{}' is not understood", text), "write it as 0=off;1=on");
+        wrong(row.line, message("the list '{}' is not understood", as_it_is(text)), "write it as 0=off;1=on");
     };
     take(row.labels, cell("enum"));
     take(row.labels_zh, cell("enum_zh"));
@@ -140,10 +142,10 @@ class ParameterConversion {
     for (const std::string_view column : {"default", "min", "max", "range"}) {
       const auto text = cell(column);
       if (!has_decimal_comma(text) || family_range(text) || family_labels(text)) continue;
-      wrong(
-          row.line,
-          formatted("'{}' in column '{}': a comma between digits is not read", text, table_->heading(column)),
-          "write decimals with a point and nothing between thousands: 0.5, 1000");
+      wrong(row.line,
+            message("'{}' in column '{}': a comma between digits is not read", as_it_is(text),
+                    as_it_is(table_->heading(column))),
+            "write decimals with a point and nothing between thousands: 0.5, 1000");
       return true;
     }
     return false;
@@ -159,7 +161,7 @@ class ParameterConversion {
     if (range.empty()) return;
     const auto take = [&](std::string& own, const std::string& of_range, std::string_view what) {
       if (!own.empty() && own != of_range)
-        wrong(row.line, formatted("{} is {}, but the range is '{}'", what, own, range),
+        wrong(row.line, message("{} is {}, but the range is '{}'", what, as_it_is(own), as_it_is(range)),
               "write the limits once");
       own = of_range;
     };
@@ -168,11 +170,11 @@ class ParameterConversion {
       take(row.high, both->second, "max");
     } else if (const auto list = family_labels(range)) {
       if (!row.labels.empty() && row.labels != *list)
-        wrong(row.line, formatted("the range '{}' is another list than the labels", range),
+        wrong(row.line, message("the range '{}' is another list than the labels", as_it_is(range)),
               "write the list once");
       row.labels = *list;
     } else {
-      wrong(row.line, formatted("the range '{}' is not understood", range),
+      wrong(row.line, message("the range '{}' is not understood", as_it_is(range)),
             "write it as 0~1000, or as a list 0=off;1=on");
     }
   }
@@ -202,9 +204,9 @@ class ParameterConversion {
       if (count++ == 0) line = row.line;
     }
     if (count > 0)
-      out_.notices.push_back(formatted(
+      out_.notices.push_back(message(
           "{}:{}: parameters without an object, which the bus does not reach: {}, the first in this line",
-          file_, line, count));
+          as_it_is(file_), line, count));
   }
 
   /// The rows as the family's reader takes them, in their own lines.
@@ -222,7 +224,8 @@ class ParameterConversion {
     for (const auto& row : rows_)
       if (const auto object = parse_object_address(row.object);
           object && dictionary_->find(*object) == nullptr)
-        wrong(row.line, formatted("{}: object {} is not in the data sheet", row.id, row.object),
+        wrong(row.line,
+              message("{}: object {} is not in the data sheet", as_it_is(row.id), as_it_is(row.object)),
               "correct the object, or leave it empty if the bus does not reach the parameter");
   }
 
@@ -237,19 +240,19 @@ class ParameterConversion {
 
 /// Columns that cannot be what the table of a family needs.
 void check_columns(const ForeignTable& table, std::string_view file, std::vector<Error>& errors) {
-  const auto wrong = [&](const std::string& what, std::string hint) {
+  const auto wrong = [&](const Message& what, Message hint) {
     errors.push_back(file_error(file, table.heading_line(), what, std::move(hint)));
   };
   if (!table.has("id") && !table.has("object"))
     wrong("no column has the parameter numbers", "name it id or No.");
   if (table.has("factor"))
-    wrong(
-        formatted("'{}' does not say whether raw numbers are multiplied or divided", table.heading("factor")),
-        "name the column 'scale' and write numbers for which value = raw × scale");
+    wrong(message("'{}' does not say whether raw numbers are multiplied or divided",
+                  as_it_is(table.heading("factor"))),
+          "name the column 'scale' and write numbers for which value = raw × scale");
   // A user who calls it `id` means it.
   if (folded_heading(table.heading("id")) != "id" && table.counts_rows("id"))
     wrong(
-        formatted("the column '{}' counts the rows: 1, 2, 3", table.heading("id")),
+        message("the column '{}' counts the rows: 1, 2, 3", as_it_is(table.heading("id"))),
         "remove it and name the column with the parameter numbers 'id'; name it 'id' itself if these are the "
         "numbers");
 }

@@ -113,10 +113,10 @@ void make_raw(ForeignRow& row, std::string_view file, std::vector<Error>& errors
     if (std::abs(raw) < kMostExact && std::abs(raw - std::round(raw)) < 1e-6)
       *cell = formatted("{}", std::llround(raw));
     else
-      errors.push_back(file_error(
-          file, row.line,
-          formatted("{}: {} {} is no whole number of steps of {}", row.id, *cell, row.unit, row.scale),
-          "correct the number or the scale"));
+      errors.push_back(file_error(file, row.line,
+                                  message("{}: {} {} is no whole number of steps of {}", as_it_is(row.id),
+                                          as_it_is(*cell), as_it_is(row.unit), as_it_is(row.scale)),
+                                  "correct the number or the scale"));
   }
 }
 
@@ -129,7 +129,7 @@ void mark_assumed(ForeignRow& row) {
 
 /// A number that contradicts the data sheet: another default, or a wider limit.
 void compare_with_sheet(ForeignRow& row, std::string_view file, std::vector<Error>& errors,
-                        std::vector<std::string>& notices) {
+                        std::vector<Message>& notices) {
   const auto scale = scale_of(row);
   for (const auto& one : numbers_of(row)) {
     const auto own = od::parse_value(row.entry->type, *one.cell);
@@ -140,18 +140,19 @@ void compare_with_sheet(ForeignRow& row, std::string_view file, std::vector<Erro
     if (scale) {
       errors.push_back(file_error(
           file, row.line,
-          formatted("{}: {} is {} here and {} in the data sheet (raw numbers, by the scale {})", row.id,
-                    one.field, *one.cell, sheet, row.scale),
-          formatted(
-              "correct the number or the scale, or leave the cell empty; the data sheet has {}, which is "
-              "{:.10g} {} by this scale",
-              sheet, od::to_double(one.of_sheet->value) * *scale, row.unit)));
+          message("{}: {} is {} here and {} in the data sheet (raw numbers, by the scale {})",
+                  as_it_is(row.id), one.field, as_it_is(*one.cell), as_it_is(sheet), as_it_is(row.scale)),
+          message("correct the number or the scale, or leave the cell empty; the data sheet has {}, which is "
+                  "{:.10g} {} by this scale",
+                  as_it_is(sheet), od::to_double(one.of_sheet->value) * *scale, as_it_is(row.unit))));
     } else if (one.wider == 0) {
-      notices.push_back(formatted("{}:{}: {}: default is {} here and {} in the data sheet: the table is used",
-                                  file, row.line, row.id, *one.cell, sheet));
+      notices.push_back(message("{}:{}: {}: default is {} here and {} in the data sheet: the table is used",
+                                as_it_is(file), row.line, as_it_is(row.id), as_it_is(*one.cell),
+                                as_it_is(sheet)));
     } else {
-      notices.push_back(formatted("{}:{}: {}: {} is {} here and {} in the data sheet: the data sheet is used",
-                                  file, row.line, row.id, one.field, *one.cell, sheet));
+      notices.push_back(message("{}:{}: {}: {} is {} here and {} in the data sheet: the data sheet is used",
+                                as_it_is(file), row.line, as_it_is(row.id), one.field, as_it_is(*one.cell),
+                                as_it_is(sheet)));
       *one.cell = sheet;
     }
   }
@@ -160,38 +161,38 @@ void compare_with_sheet(ForeignRow& row, std::string_view file, std::vector<Erro
 }  // namespace
 
 bool settle_numbers(std::vector<ForeignRow>& rows, std::string_view file, std::vector<Error>& errors,
-                    std::vector<std::string>& notices) {
+                    std::vector<Message>& notices) {
   const auto proofs = proofs_in(rows);
   if (proofs.raw != 0 && proofs.in_unit != 0) {
     errors.push_back(file_error(
         file, proofs.in_unit,
-        formatted("default or limits are numbers in the unit here, but raw numbers in line {}", proofs.raw),
+        message("default or limits are numbers in the unit here, but raw numbers in line {}", proofs.raw),
         "write all numbers of the table in the unit, or all raw; correct the scale if it is wrong"));
     return false;
   }
   if (proofs.in_unit != 0) {
     notices.push_back(
-        formatted("{}:{}: default and limits are taken as numbers in the unit, as this line shows them; the "
-                  "table of the family has raw ones",
-                  file, proofs.in_unit));
+        message("{}:{}: default and limits are taken as numbers in the unit, as this line shows them; the "
+                "table of the family has raw ones",
+                as_it_is(file), proofs.in_unit));
     for (auto& row : rows) make_raw(row, file, errors);
   } else if (proofs.open != 0 && proofs.raw != 0) {
-    notices.push_back(formatted(
-        "{}:{}: default and limits are taken as raw numbers (value = raw × scale), as line {} shows "
-        "them; compare them with the manual",
-        file, proofs.open, proofs.raw));
+    notices.push_back(
+        message("{}:{}: default and limits are taken as raw numbers (value = raw × scale), as line {} shows "
+                "them; compare them with the manual",
+                as_it_is(file), proofs.open, proofs.raw));
   } else if (proofs.open != 0 && errors.empty()) {
     for (auto& row : rows) mark_assumed(row);
     notices.push_back(
-        formatted("{}:{}: default and limits are taken as raw numbers (value = raw × scale): no line "
-                  "of the table proves it; compare them with the manual",
-                  file, proofs.open));
+        message("{}:{}: default and limits are taken as raw numbers (value = raw × scale): no line "
+                "of the table proves it; compare them with the manual",
+                as_it_is(file), proofs.open));
   }
   return true;
 }
 
 void add_from_sheet(ForeignRow& row, std::string_view file, std::vector<Error>& errors,
-                    std::vector<std::string>& notices) {
+                    std::vector<Message>& notices) {
   if (row.entry == nullptr) {
     if (row.access.empty()) row.access = "rw";
     if (!row.type.empty()) return;
@@ -201,8 +202,9 @@ void add_from_sheet(ForeignRow& row, std::string_view file, std::vector<Error>& 
   }
   const auto& entry = *row.entry;
   const auto use_sheet = [&](std::string& cell, std::string_view of_sheet) {
-    notices.push_back(formatted("{}:{}: {} is {} here and {} in the data sheet: the data sheet is used", file,
-                                row.line, row.id, cell, of_sheet));
+    notices.push_back(message("{}:{}: {} is {} here and {} in the data sheet: the data sheet is used",
+                              as_it_is(file), row.line, as_it_is(row.id), as_it_is(cell),
+                              as_it_is(of_sheet)));
     cell = of_sheet;
   };
   const auto own = od::parse_data_type(row.type);

@@ -28,14 +28,14 @@ extern const std::string_view kForeignRowHeader;
 /// notice that says how the numbers were taken where a row does not prove it by itself. Where nothing proves
 /// it they are marked as assumed. False: there are proofs of both.
 bool settle_numbers(std::vector<ForeignRow>& rows, std::string_view file, std::vector<Error>& errors,
-                    std::vector<std::string>& notices);
+                    std::vector<Message>& notices);
 
 /// What a table does not say and the data sheet does. Where they contradict each other in type or access, or
 /// a limit is wider than that of the data sheet, the data sheet is used, with a notice; a default that
 /// differs is told. Under a scale a default that differs or a wider limit is an error: every number written
 /// would be wrong by a factor if the scale is.
 void add_from_sheet(ForeignRow& row, std::string_view file, std::vector<Error>& errors,
-                    std::vector<std::string>& notices);
+                    std::vector<Message>& notices);
 
 /// A default as od::parse_value() reads it; empty where there is none that holds for every node.
 std::string text_of(const std::optional<od::NodeValue>& value);

@@ -14,7 +14,7 @@ namespace servoctl::drive {
 struct ConvertedTable {
   std::string csv;  ///< With its header line; empty: there is nothing usable.
   std::size_t rows = 0;
-  std::vector<std::string> notices;  ///< What was left out or taken in a certain way, with its line.
+  std::vector<Message> notices;  ///< What was left out or taken in a certain way, with its line.
 };
 
 /// A table of parameters as spreadsheets and manuals have it: any of the usual English or Chinese headings,

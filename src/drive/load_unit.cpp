@@ -28,15 +28,15 @@ constexpr std::array<std::string_view, 3> kPerTime{"", "/s", "/s2"};
 Result<LoadUnit> parse_load_unit(std::string_view text, double gear) {
   const auto given = split_unit(trim(text));
   if (!given)
-    return fail(Errc::usage, formatted("'{}' is not a number with the load's unit", trim(text)),
+    return fail(Errc::usage, message("'{}' is not a number with the load's unit", as_it_is(trim(text))),
                 "write how far the load moves in one turn of the gear's output: \"20 mm\"");
   const auto [number, unit] = *given;
   for (const auto own : {"rev", "rpm", "rev/s2", "inc", "%", "Nm", "s", "Hz", "V", "A", "W", "degC"})
     if (conversion(unit, own))
-      return fail(Errc::usage, formatted("'{}' is a unit of the motor or of time", unit),
+      return fail(Errc::usage, message("'{}' is a unit of the motor or of time", as_it_is(unit)),
                   "a rotating load needs a unit of another name: \"360 tabledeg\"");
   if (number == 0 || unit.find_first_of("/ ,;=\"'") != std::string_view::npos)
-    return fail(Errc::usage, formatted("'{}' is not a distance of the load", trim(text)),
+    return fail(Errc::usage, message("'{}' is not a distance of the load", as_it_is(trim(text))),
                 "such as \"20 mm\"; -20 for a load that runs the other way");
   return LoadUnit{std::string(unit), number / gear};
 }

@@ -24,7 +24,8 @@ tl::unexpected<Error> unknown(const Profile& profile, std::string_view text) {
     hint = profile.parameters.empty()
                ? "`objects PATTERN` finds names; an index is written 0x6041 or 6041h"
                : "`objects PATTERN` and `param search WORD` find names; an index is written 0x6041 or 6041h";
-  return fail(Errc::usage, formatted("'{}' is not an object or parameter of {}", text, profile.family),
+  return fail(Errc::usage,
+              message("'{}' is not an object or parameter of {}", as_it_is(text), as_it_is(profile.family)),
               std::move(hint));
 }
 
@@ -32,12 +33,12 @@ tl::unexpected<Error> ambiguous(std::string_view text, const std::vector<std::st
   const std::vector<std::string> shown(
       meanings.begin(),
       meanings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(meanings.size(), 6)));
-  return fail(Errc::usage, formatted("'{}' is ambiguous: {} meanings", text, meanings.size()),
+  return fail(Errc::usage, message("'{}' is ambiguous: {} meanings", as_it_is(text), meanings.size()),
               "write " + one_of(shown) + (shown.size() < meanings.size() ? ", …" : ""));
 }
 
 tl::unexpected<Error> without_object(const od::Parameter& parameter) {
-  return fail(Errc::usage, formatted("{} has no CANopen object", parameter.id + " " + parameter.name),
+  return fail(Errc::usage, message("{} has no CANopen object", parameter.id + " " + parameter.name),
               "it can be changed only on the panel; `param explain` describes it");
 }
 
@@ -133,13 +134,14 @@ Result<const od::Parameter*> resolve_parameter(const Profile& profile, std::stri
   for (const auto* parameter : named) known.push_back(numbered_name(*parameter));
   if (named.size() > 1) return ambiguous(text, known);
   for (const auto& parameter : profile.parameters) known.push_back(parameter.id);
-  auto hint =
-      known.empty() ? formatted("{} has no parameters", profile.family) : near_names(profile, text, false);
+  auto hint = known.empty() ? message("{} has no parameters", as_it_is(profile.family))
+                            : Message(near_names(profile, text, false));
   if (hint.empty() && is_ascii(text)) hint = did_you_mean(text, known);
   if (hint.empty())
-    hint = formatted("`param list -d {0}` shows all, `param search WORD -d {0}` finds them by name",
-                     profile.family);
-  return fail(Errc::usage, formatted("'{}' is not a panel parameter of {}", text, profile.family),
+    hint = message("`param list -d {0}` shows all, `param search WORD -d {0}` finds them by name",
+                   as_it_is(profile.family));
+  return fail(Errc::usage,
+              message("'{}' is not a panel parameter of {}", as_it_is(text), as_it_is(profile.family)),
               std::move(hint));
 }
 
@@ -168,7 +170,8 @@ Result<Target> at_address(const Profile* profile, ObjectAddress address, std::st
 Result<Target> resolve(const Profile* profile, std::string_view text, Match match) {
   if (const auto address = parse_object_address(text)) return at_address(profile, *address, text);
   if (profile == nullptr)
-    return fail(Errc::usage, formatted("'{}' is not an object address, and names need a drive family", text),
+    return fail(Errc::usage,
+                message("'{}' is not an object address, and names need a drive family", as_it_is(text)),
                 "write an address such as 0x6041 or 0x6099:1, or add -d FAMILY (`drives` lists them)");
   if (const auto* parameter = profile->parameter(text)) {
     if (!parameter->object) return without_object(*parameter);

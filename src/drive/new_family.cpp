@@ -19,9 +19,10 @@ namespace fs = std::filesystem;
 namespace {
 
 tl::unexpected<Error> cannot_make(const fs::path& folder, int reason) {
-  return fail(Errc::file,
-              formatted("cannot write {}: {}", folder.string(), std::generic_category().message(reason)),
-              "choose an existing folder you may write to");
+  return fail(
+      Errc::file,
+      message("cannot write {}: {}", as_it_is(folder.string()), std::generic_category().message(reason)),
+      "choose an existing folder you may write to");
 }
 
 /// A folder that is gone again unless it was moved to its place.
@@ -66,15 +67,14 @@ class DraftFolder {
 };
 
 Result<void> check_draft(const NewFamily& family, const fs::path& draft, std::span<const fs::path> folders) {
-  std::string all;
-  std::size_t count = 0;
+  Message all;
   for (const auto& mistake : mistakes_of({family.name, draft / family.name}, folders)) {
     if (!mistake.breaks) continue;
-    append(all, mistake.message, "; ");
-    ++count;
+    if (!all.empty()) all += "; ";
+    all += mistake.message;
   }
-  if (count == 0) return {};
-  return fail(Errc::file, formatted("nothing was written: {}", all), "correct the data sheet or the tables");
+  if (all.empty()) return {};
+  return fail(Errc::file, message("nothing was written: {}", all), "correct the data sheet or the tables");
 }
 
 /// Writes the files into a draft beside others, and checks them.
@@ -91,7 +91,7 @@ Result<fs::path> free_place(const NewFamily& family, const fs::path& folder) {
   auto place = folder / family.name;
   std::error_code ignored;
   if (fs::exists(place, ignored))
-    return fail(Errc::usage, formatted("{} exists", place.string()), "choose another name");
+    return fail(Errc::usage, message("{} exists", as_it_is(place.string())), "choose another name");
   return place;
 }
 
@@ -117,9 +117,9 @@ Result<void> check_family_name(std::string_view name) {
   const bool begins = !name.empty() && name.front() >= 'a' && name.front() <= 'z';
   if (begins && std::all_of(name.begin(), name.end(), fits) && !taken) return {};
   if (taken)
-    return fail(Errc::usage, formatted("'{}' cannot be the name of a family", name),
+    return fail(Errc::usage, message("'{}' cannot be the name of a family", as_it_is(name)),
                 "the word means something else in commands: choose another name, such as p10");
-  return fail(Errc::usage, formatted("'{}' cannot be the name of a family", name),
+  return fail(Errc::usage, message("'{}' cannot be the name of a family", as_it_is(name)),
               "lower case letters, digits, _ and -, beginning with a letter: p10, lxd7-can");
 }
 

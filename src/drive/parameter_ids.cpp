@@ -63,8 +63,8 @@ void refuse_same_ids(std::span<const od::Parameter> parameters, std::string_view
     if (is_new) continue;
     errors.push_back(
         file_error(file, parameter.file_line,
-                   formatted("{} is the same parameter number as {} in line {}", parameter.id,
-                             first->second->id, first->second->file_line),
+                   message("{} is the same parameter number as {} in line {}", parameter.id,
+                           first->second->id, first->second->file_line),
                    "case, _, - and leading zeros do not tell numbers apart: give each a number of its own"));
   }
 }
@@ -76,7 +76,7 @@ std::vector<Error> shadowing_ids(std::span<const od::Parameter> parameters, cons
   for (const auto& parameter : parameters)
     if (const auto shadow = shadowed_by(parameter, names); !shadow.empty())
       out.push_back(file_error(file, parameter.file_line, shadow,
-                               formatted("give the parameter another number, such as P-{}", parameter.id)));
+                               message("give the parameter another number, such as P-{}", parameter.id)));
   return out;
 }
 

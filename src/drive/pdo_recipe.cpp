@@ -40,8 +40,7 @@ Result<void> read_recipes(const toml::array& list, std::string_view file, std::v
     const auto at = each.source().begin;
     const auto* table = each.as_table();
     if (table == nullptr)
-      return fail(
-          file_error(file, at.line, at.column, formatted("a PDO cannot be {}", value_in_words(each))));
+      return fail(file_error(file, at.line, at.column, message("a PDO cannot be {}", value_in_words(each))));
     const TableReader reader(*table, file);
     out.emplace_back().line = at.line;
     if (const auto read = read_recipe(reader, out.back()); !read) return read;
@@ -74,7 +73,8 @@ Result<PdoFile> parse_pdo_file(std::string_view toml, std::string_view file) {
   if (inner) return fail(*inner);
   if (!done) return fail(done.error());
   if (format == 0)
-    return fail(Errc::file, formatted("{}: 'format' is missing", file), "begin the file with format = 1");
+    return fail(Errc::file, message("{}: 'format' is missing", as_it_is(file)),
+                "begin the file with format = 1");
   return out;
 }
 

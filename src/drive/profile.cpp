@@ -99,7 +99,7 @@ Result<Profile> load_parent(const Family& family, std::string_view rules, std::s
   auto loaded = load_family(parent, folders, ancestors + 1);
   if (!loaded)
     return fail(loaded.error().code == Errc::refused ? Errc::refused : Errc::file,
-                formatted("{}: parent: {}", rules_file(family).string(), loaded.error().message),
+                message("{}: parent: {}", as_it_is(rules_file(family).string()), loaded.error().message),
                 loaded.error().hint);
   return loaded;
 }
@@ -140,7 +140,7 @@ Profile generic_profile(std::string family, std::span<const fs::path> folders) {
   if (auto generic = load_family(kGenericFamily, folders, 0))
     profile = std::move(*generic);
   else if (generic.error().code == Errc::refused)
-    profile.warnings.push_back(generic.error().message);
+    profile.warnings.push_back(generic.error().message.text());
   profile.family = std::move(family);
   profile.rules.name.clear();
   profile.rules.vendor.clear();
@@ -241,7 +241,7 @@ Result<Profile> load_family(std::string_view family, std::span<const fs::path> f
             ? std::string(
                   "no drive data was found: set SERVOCTL_DRIVES to its folder, or name an .eds or .xml file")
             : "known families: " + one_of(names) + "; or name an .eds or .xml file";
-  return fail(Errc::usage, formatted("no drive family is called '{}'", family), std::move(hint));
+  return fail(Errc::usage, message("no drive family is called '{}'", as_it_is(family)), std::move(hint));
 }
 
 }  // namespace

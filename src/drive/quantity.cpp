@@ -37,13 +37,13 @@ std::optional<double> in_own_unit(const Meaning& meaning, std::string_view unit)
 tl::unexpected<Error> inconvertible(const Meaning& meaning, const NumberWithUnit& given,
                                     std::string_view text) {
   if (meaning.unit.empty())
-    return fail(Errc::usage, formatted("'{}' carries a unit, but this object has none", text),
+    return fail(Errc::usage, message("'{}' carries a unit, but this object has none", as_it_is(text)),
                 "write the plain number");
-  auto hint = formatted("write a value in {} or the raw number", meaning.unit);
+  auto hint = message("write a value in {} or the raw number", meaning.unit);
   if (meaning.measure && !meaning.bridge) hint += "; its scale could not be read from the drive";
   return fail(Errc::usage,
-              formatted("'{}': the unit of this object is {}; {} cannot be converted to it", text,
-                        meaning.unit, given.unit),
+              message("'{}': the unit of this object is {}; {} cannot be converted to it", as_it_is(text),
+                      meaning.unit, given.unit),
               std::move(hint));
 }
 
@@ -60,12 +60,12 @@ std::string whole_range(const Meaning& meaning) {
   return out + formatted(" = {}..{} {}", in_unit(*meaning.min), in_unit(*meaning.max), meaning.unit);
 }
 
-tl::unexpected<Error> out_of_range(const Meaning& meaning, std::string_view said, std::string hint = {}) {
-  return fail(Errc::usage, formatted("{} is out of range: {}", said, whole_range(meaning)), std::move(hint));
+tl::unexpected<Error> out_of_range(const Meaning& meaning, std::string_view said, Message hint = {}) {
+  return fail(Errc::usage, message("{} is out of range: {}", said, whole_range(meaning)), std::move(hint));
 }
 
 tl::unexpected<Error> too_large(std::string_view text) {
-  return fail(Errc::usage, formatted("'{}' is too large for this object", text));
+  return fail(Errc::usage, message("'{}' is too large for this object", as_it_is(text)));
 }
 
 /// A number that an object carries encoded; it has fewer digits than the number.
@@ -103,9 +103,9 @@ Result<Quantity> from_physical(const Meaning& meaning, const NumberWithUnit& giv
   const double nearest = std::clamp(whole, bound(meaning.min, whole), bound(meaning.max, whole));
   if (steps == Steps::exact && std::abs(raw - whole) > kWhole)
     return fail(Errc::usage,
-                formatted("'{}' is {} steps of {} {}, not a whole number", text, plain_number(raw, 9),
-                          plain_number(meaning.scale, 6), meaning.unit),
-                formatted("the nearest value is {} {}", plain_number(tidy(nearest * step), 9), given.unit));
+                message("'{}' is {} steps of {} {}, not a whole number", as_it_is(text), plain_number(raw, 9),
+                        plain_number(meaning.scale, 6), meaning.unit),
+                message("the nearest value is {} {}", plain_number(tidy(nearest * step), 9), given.unit));
   const auto rounding =
       judge_rounding({given.number, tidy(whole * step), std::abs(step), std::string(given.unit)});
   if (!rounding) return fail(rounding.error());
@@ -227,17 +227,17 @@ Result<void> check_limits(const Meaning& meaning, const od::Value& value) {
   const bool low = meaning.min && compare(meaning, value, *meaning.min) < 0;
   const bool high = meaning.max && compare(meaning, value, *meaning.max) > 0;
   if (!low && !high && !is_too_little(meaning, value)) return {};
-  std::string hint;
+  Message hint;
   if (meaning.labels != nullptr)
     hint = "values: " + labels_text(*meaning.labels);
   else if (meaning.scale != 1)
-    hint = formatted("one step is {} {}", plain_number(meaning.scale, 6), meaning.unit);
+    hint = message("one step is {} {}", plain_number(meaning.scale, 6), meaning.unit);
   else if (is_too_little(meaning, value))
-    hint = formatted(
+    hint = message(
         "0 switches it off{}",
         meaning.least_assumed
-            ? formatted("; the minimum {} is assumed: the manual may mean the step size", *meaning.least)
-            : std::string());
+            ? message("; the minimum {} is assumed: the manual may mean the step size", *meaning.least)
+            : Message());
   return out_of_range(meaning, plain_text(meaning, value), std::move(hint));
 }
 
@@ -256,7 +256,7 @@ Result<Quantity> read(const Meaning& meaning, std::string_view text, Steps steps
     if (const auto physical = split_unit(text)) return from_physical(meaning, *physical, text, steps);
   const auto plain = od::parse_value(meaning.type, text);
   if (!plain && meaning.labels != nullptr && !parse_integer(text))
-    return fail(Errc::usage, formatted("'{}' is not a value of this object", text),
+    return fail(Errc::usage, message("'{}' is not a value of this object", as_it_is(text)),
                 "values: " + labels_text(*meaning.labels));
   const auto integer = parse_signed(text);
   if (!plain && integer && is_beyond(meaning, static_cast<double>(*integer)))

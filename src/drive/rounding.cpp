@@ -32,12 +32,12 @@ Result<std::optional<Rounding>> judge_rounding(const Rounding& rounding) {
   const auto asked = with_unit(rounding.asked, unit);
   const auto held = with_unit(rounding.held, unit);
   if (rounding.step == 0)
-    return fail(Errc::usage, formatted("{} would become {}: out of range for this object", asked, held));
+    return fail(Errc::usage, message("{} would become {}: out of range for this object", asked, held));
   const double below = std::floor(rounding.asked / rounding.step) * rounding.step;
   return fail(Errc::usage,
-              formatted("{} would become {}: one step is {}", asked, held, with_unit(rounding.step, unit)),
-              formatted("the nearest values are {} and {}", with_unit(below, unit),
-                        with_unit(below + rounding.step, unit)));
+              message("{} would become {}: one step is {}", asked, held, with_unit(rounding.step, unit)),
+              message("the nearest values are {} and {}", with_unit(below, unit),
+                      with_unit(below + rounding.step, unit)));
 }
 
 }  // namespace servoctl::drive

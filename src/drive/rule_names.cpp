@@ -59,7 +59,7 @@ class NameCheck {
     const auto at = node.source().begin;
     auto error =
         file_error(file_, at.line, at.column,
-                   formatted("'{}' names {}, which is neither a parameter nor an object", key, name));
+                   message("'{}' names {}, which is neither a parameter nor an object", as_it_is(key), name));
     error.hint = found.error().hint;
     errors_->push_back(std::move(error));
   }

@@ -59,7 +59,8 @@ class RulesReader {
         });
     const bool misses = root.get("format") == nullptr || rules_.family.empty();
     if (misses && errors_->size() == before)
-      errors_->push_back(make_error(Errc::file, formatted("{}: 'format' or 'family' is missing", file_),
+      errors_->push_back(make_error(Errc::file,
+                                    message("{}: 'format' or 'family' is missing", as_it_is(file_)),
                                     "begin the file with format = 1 and family = \"NAME\""));
     if (rules_.is_assumed("motion.inputs_active_low")) rules_.motion.inputs_known = true;
     return std::move(rules_);

@@ -85,9 +85,9 @@ Result<void> check_toml_depth(std::string_view toml, std::string_view file) {
     depth.step();
     if (!depth.is_too_deep()) continue;
     const auto line = static_cast<std::uint32_t>(depth.line());
-    auto error =
-        fail(Errc::file, formatted("{}:{}: tables are nested deeper than {} levels", file, line, kDeepest))
-            .value();
+    auto error = fail(Errc::file, message("{}:{}: tables are nested deeper than {} levels", as_it_is(file),
+                                          line, kDeepest))
+                     .value();
     error.line = line;
     return fail(std::move(error));
   }

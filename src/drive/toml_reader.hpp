@@ -172,8 +172,7 @@ class TableReader {
     return out;
   }
 
-  tl::unexpected<Error> fail_at(const toml::node& node, const std::string& what,
-                                std::string hint = {}) const {
+  tl::unexpected<Error> fail_at(const toml::node& node, const Message& what, Message hint = {}) const {
     const auto at = node.source().begin;
     return noted(file_error(file_, at.line, at.column, what), std::move(hint));
   }
@@ -188,8 +187,8 @@ class TableReader {
     if (handler(node)) return {};
     const auto given = forms.find(std::string_view(key.str()));
     const auto form = given == forms.end() ? handler.form() : given->second;
-    return fail_at(node, formatted("'{}' cannot be {}", key.str(), value_in_words(node)),
-                   form.empty() ? std::string() : formatted("write {}", form));
+    return fail_at(node, message("'{}' cannot be {}", as_it_is(key.str()), value_in_words(node)),
+                   form.empty() ? Message() : message("write {}", form));
   }
 
   tl::unexpected<Error> unknown(const toml::key& key, const Handlers& handlers) const {
@@ -198,11 +197,11 @@ class TableReader {
     for (const auto& handler : handlers) known.emplace_back(handler.first);
     auto hint = did_you_mean(key.str(), known);
     if (hint.empty() && known.size() <= kMostOffered) hint = "write one of " + one_of(known);
-    return noted(file_error(file_, at.line, at.column, formatted("unknown key '{}'", key.str())),
+    return noted(file_error(file_, at.line, at.column, message("unknown key '{}'", as_it_is(key.str()))),
                  std::move(hint));
   }
 
-  tl::unexpected<Error> noted(Error error, std::string hint) const {
+  tl::unexpected<Error> noted(Error error, Message hint) const {
     error.hint = std::move(hint);
     if (errors_ != nullptr) errors_->push_back(error);
     return fail(std::move(error));

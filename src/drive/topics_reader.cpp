@@ -30,7 +30,7 @@ class TopicsReader {
                {"topic", [&](const auto& n) { return topics(n); }},
                {"words_zh", [&](const auto& n) { return words(n); }}});
     if (root.get("format") == nullptr && errors_->empty())
-      errors_->push_back(make_error(Errc::file, formatted("{}: 'format' is missing", file_),
+      errors_->push_back(make_error(Errc::file, message("{}: 'format' is missing", as_it_is(file_)),
                                     "begin the file with format = 1"));
     for (auto& topic : topics_) give_words(topic);
     return std::move(topics_);
@@ -154,16 +154,18 @@ class TopicsReader {
 
   Result<void> check(const toml::table& table, const Topic& topic) {
     const TableReader reader(table, file_, errors_);
-    const auto wrong = [&](const std::string& what) {
-      return reader.fail_at(table, topic.name.empty() ? what : formatted("topic '{}': {}", topic.name, what));
+    const auto wrong = [&](const Message& what) {
+      return reader.fail_at(
+          table, topic.name.empty() ? what : message("topic '{}': {}", as_it_is(topic.name), what));
     };
     for (const auto& [key, value] :
          {std::pair("kind", &topic.kind), std::pair("name", &topic.name), std::pair("title", &topic.title),
           std::pair("title_zh", &topic.title_zh), std::pair("line", &topic.line)})
-      if (trim(*value).empty()) return wrong(formatted("'{}' is missing", key));
+      if (trim(*value).empty()) return wrong(message("'{}' is missing", as_it_is(key)));
     for (const auto& [key, one, other] :
          {std::tuple("text", &topic.text, &topic.text_zh), std::tuple("note", &topic.note, &topic.note_zh)})
-      if (one->empty() != other->empty()) return wrong(formatted("'{0}' and '{0}_zh' go together", key));
+      if (one->empty() != other->empty())
+        return wrong(message("'{0}' and '{0}_zh' go together", as_it_is(key)));
     if (topic.text.empty() && topic.rows.empty() && topic.picture.empty())
       return wrong("it says nothing: 'text', 'rows' or 'picture' is missing");
     if (topic.value && !topic.object) return wrong("'value' needs 'object'");
@@ -171,7 +173,7 @@ class TopicsReader {
     if (topic.columns.empty() != topic.rows.empty()) return wrong("'columns' and 'rows' go together");
     if (topic.columns_zh.size() != topic.columns.size())
       return wrong(
-          formatted("{} 'columns', but {} 'columns_zh'", topic.columns.size(), topic.columns_zh.size()));
+          message("{} 'columns', but {} 'columns_zh'", topic.columns.size(), topic.columns_zh.size()));
     return {};
   }
 

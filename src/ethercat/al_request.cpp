@@ -96,13 +96,13 @@ void AlRequest::on_status(AlStatus status, TimePoint now) {
 void AlRequest::wait_on(AlStatus status, TimePoint now) {
   if (status.error)
     return finish(fail(error(Errc::negative,
-                             formatted("{} refused, state is {}: {} (AL status code {:04X}h)", name(target_),
-                                       name(status.state), al_status_text(status.code), status.code),
+                             message("{} refused, state is {}: {} (AL status code {:04X}h)", name(target_),
+                                     name(status.state), al_status_text(status.code), status.code),
                              al_status_hint(status.code))));
   if (status.state == target_) return finish(status);
   if (now < until_) return go(State::wait, now, kPoll);
   finish(fail(error(
-      Errc::timeout, formatted("{} was requested, state is still {}", name(target_), name(status.state)),
+      Errc::timeout, message("{} was requested, state is still {}", name(target_), name(status.state)),
       "it may need more time, or something from the master: process data for OP, settings for SAFE-OP")));
 }
 
@@ -118,7 +118,7 @@ void AlRequest::finish(Result<AlStatus> result) {
   result_ = std::move(result);
 }
 
-Error AlRequest::error(Errc code, std::string what, std::string hint) const {
+Error AlRequest::error(Errc code, Message what, Message hint) const {
   return drive_error(code, node_, what, std::move(hint));
 }
 

@@ -47,7 +47,7 @@ class AlRequest {
   void on_missing(bool lost, TimePoint now);
   void wait_on(AlStatus status, TimePoint now);
   void finish(Result<AlStatus> result);
-  Error error(Errc code, std::string what, std::string hint) const;
+  Error error(Errc code, Message what, Message hint) const;
 
   std::uint8_t node_;
   SlaveAddress slave_;

@@ -65,7 +65,7 @@ void CoeClient::start_download(ObjectAddress object, Bytes data, TimePoint now, 
   const bool fits = !data_.empty() && data_.size() <= 4;
   if (transfer == Transfer::expedited && !fits)
     return finish(
-        fail(error(Errc::usage, formatted("{} bytes do not fit into one expedited message", data_.size()),
+        fail(error(Errc::usage, message("{} bytes do not fit into one expedited message", data_.size()),
                    "leave --transfer expedited out")));
   core_.ask_write(object, data_, now);
   const auto access = complete ? kCompleteAccess : 0U;
@@ -106,9 +106,9 @@ void CoeClient::on_abort(ByteSpan message) {
   const auto code = sdo_data(message);
   if (sdo_object(message) != object_) return core_.note(command(message), sdo_object(message), code);
   const bool writes = state_ != State::upload_initiate && state_ != State::upload_segment;
-  auto refused =
-      error(Errc::sdo_abort, formatted("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
-            coe_abort_hint(code, object_, writes));
+  auto refused = error(Errc::sdo_abort,
+                       servoctl::message("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
+                       coe_abort_hint(code, object_, writes));
   refused.abort_code = code;
   finish(fail(std::move(refused)));
 }
@@ -213,8 +213,8 @@ void CoeClient::on_refusal(std::uint16_t detail) {
   if (state_ == State::idle) return;
   finish(fail(error(
       Errc::protocol,
-      formatted("its mailbox refuses the request: {} (mailbox error {:04X}h)", mailbox_error_text(detail),
-                detail),
+      message("its mailbox refuses the request: {} (mailbox error {:04X}h)", mailbox_error_text(detail),
+              detail),
       "some slaves accept no further transfer after one that was left open: `state init` and up again clears it")));
 }
 
@@ -243,7 +243,7 @@ void CoeClient::finish(Result<Bytes> result) {
   core_.finish(std::move(result));
 }
 
-Error CoeClient::error(Errc code, std::string message, std::string hint) const {
+Error CoeClient::error(Errc code, Message message, Message hint) const {
   return drive_error(code, node_, object_, message, std::move(hint));
 }
 

@@ -97,7 +97,7 @@ void CoeInfo::on_message(ByteSpan message, TimePoint now) {
 
 bool CoeInfo::follows(std::uint16_t left) {
   if (left + 1 == *left_) return true;
-  finish(fail(error(Errc::protocol, formatted("part {} from the end of its answer is missing", *left_ - 1),
+  finish(fail(error(Errc::protocol, message("part {} from the end of its answer is missing", *left_ - 1),
                     "try again; if it persists, frames are being lost")));
   return false;
 }
@@ -112,7 +112,7 @@ void CoeInfo::on_error(ByteSpan data) {
     return finish(fail(error(Errc::protocol, "refused without a code", std::string(kNoInfo))));
   const auto code = dword_at(data, 0);
   auto refused =
-      error(Errc::sdo_abort, formatted("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
+      error(Errc::sdo_abort, message("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(code), code),
             asked_ == kAskList ? std::string(kNoInfo) : canopen::sdo_abort_hint(code));
   refused.abort_code = code;
   finish(fail(std::move(refused)));
@@ -163,8 +163,8 @@ void CoeInfo::complete_entry() {
 void CoeInfo::on_refusal(std::uint16_t detail) {
   if (asked_ == 0) return;
   finish(fail(error(Errc::protocol,
-                    formatted("its mailbox refuses the request: {} (mailbox error {:04X}h)",
-                              mailbox_error_text(detail), detail),
+                    message("its mailbox refuses the request: {} (mailbox error {:04X}h)",
+                            mailbox_error_text(detail), detail),
                     std::string(kNoInfo))));
 }
 
@@ -177,8 +177,8 @@ void CoeInfo::on_time(TimePoint now) {
   if (asked_ == 0 || now < deadline_) return;
   const auto waited = std::chrono::duration_cast<std::chrono::milliseconds>(timeout_).count();
   finish(fail(error(Errc::timeout,
-                    left_ ? formatted("its answer stopped {} parts before its end", *left_)
-                          : formatted("no answer within {} ms", waited),
+                    left_ ? message("its answer stopped {} parts before its end", *left_)
+                          : message("no answer within {} ms", waited),
                     std::string(kNoInfo))));
 }
 
@@ -189,7 +189,7 @@ void CoeInfo::finish(Result<Description> result) {
   result_ = std::move(result);
 }
 
-Error CoeInfo::error(Errc code, std::string what, std::string hint) const {
+Error CoeInfo::error(Errc code, Message what, Message hint) const {
   if (asked_ == kAskList)
     return drive_error(code, node_, "the list of its objects: " + what, std::move(hint));
   return drive_error(code, node_, object_, "its description: " + what, std::move(hint));

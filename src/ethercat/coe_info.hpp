@@ -83,7 +83,7 @@ class CoeInfo {
   void complete_object();
   void complete_entry();
   void finish(Result<Description> result);
-  Error error(Errc code, std::string what, std::string hint) const;
+  Error error(Errc code, Message what, Message hint) const;
 
   std::uint8_t node_;
   Duration timeout_;

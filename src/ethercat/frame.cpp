@@ -28,7 +28,7 @@ std::size_t data_size(ByteSpan frame, std::size_t datagram) {
   return word_at(frame, datagram + 6) & kLengthMask;
 }
 
-tl::unexpected<Error> malformed(std::string what) {
+tl::unexpected<Error> malformed(Message what) {
   return fail(Errc::protocol, "damaged EtherCAT frame: " + std::move(what),
               "frames are truncated or altered on the way: check the interface and the cable");
 }
@@ -88,15 +88,15 @@ Result<void> FrameReader::check() {
   if (frame_.size() < kFrameHeader) return malformed("it ends before its header");
   const auto header = word_at(frame_, kLengthAt);
   const std::size_t length = header & kLengthMask;
-  if (header >> 12U != kDatagrams) return malformed(formatted("it is of type {}, not 1", header >> 12U));
+  if (header >> 12U != kDatagrams) return malformed(message("it is of type {}, not 1", header >> 12U));
   if (kFrameHeader + length > frame_.size())
-    return malformed(formatted("it announces {} bytes and has {}", length, frame_.size() - kFrameHeader));
+    return malformed(message("it announces {} bytes and has {}", length, frame_.size() - kFrameHeader));
   frame_ = frame_.first(kFrameHeader + length);
   for (std::size_t at = kFrameHeader;;) {
     if (at + kDatagramOverhead > frame_.size()) return malformed("a datagram begins beyond its end");
     const auto end = at + kDatagramOverhead + data_size(frame_, at);
     if (end > frame_.size())
-      return malformed(formatted("a datagram of {} bytes extends beyond its end", data_size(frame_, at)));
+      return malformed(message("a datagram of {} bytes extends beyond its end", data_size(frame_, at)));
     if ((word_at(frame_, at + 6) & kMoreFollow) == 0) return {};
     at = end;
   }

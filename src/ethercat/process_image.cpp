@@ -87,7 +87,7 @@ Result<ProcessImage::Cycle> ProcessImage::set(std::uint8_t node, ObjectAddress o
                             "`pdo show` shows what is mapped"));
   if (value.size() != bytes_for(*bits))
     return fail(drive_error(Errc::usage, node, object,
-                            formatted("{} bytes for an output of {} bits", value.size(), *bits),
+                            message("{} bytes for an output of {} bits", value.size(), *bits),
                             "the mapping says how long it is: `pdo show`"));
   auto* slave = find(node);
   for (auto& field : slave->out_fields) {

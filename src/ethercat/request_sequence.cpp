@@ -38,9 +38,9 @@ void RequestSequence::on_answer(const Answer& answer, TimePoint) {
   const auto& request = requests_[next_];
   const bool none = !answer.done() && !is_broadcast(request.command);
   if (answer.lost || none) {
-    const auto what = formatted("register {:04X}h cannot be {}: {}", request.address >> 16U,
-                                writes(request.command) ? "written" : "read",
-                                answer.lost ? "frames do not come back" : "it does not answer");
+    const auto what = message("register {:04X}h cannot be {}: {}", request.address >> 16U,
+                              writes(request.command) ? "written" : "read",
+                              answer.lost ? "frames do not come back" : "it does not answer");
     const auto* hint = "is it powered, and is the cable plugged in? `scan` shows which slaves answer";
     next_ = requests_.size();
     result_ = node_ != 0 ? fail(drive_error(Errc::timeout, node_, what, hint)) : fail(Errc::bus, what, hint);

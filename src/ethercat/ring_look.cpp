@@ -88,7 +88,7 @@ void RingLook::on_answer(const Answer& answer, TimePoint) {
   if (behind) ++view_.count;
   if (!answer.done()) {
     const auto position = view_.slaves.size() + 1;
-    auto gone = make_error(Errc::timeout, formatted("the slave at position {} no longer answers", position),
+    auto gone = make_error(Errc::timeout, message("the slave at position {} no longer answers", position),
                            "was a cable pulled or its supply switched off? Try again");
     gone.node = static_cast<std::uint8_t>(position);
     return finish(fail(std::move(gone)));

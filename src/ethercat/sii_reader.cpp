@@ -135,7 +135,7 @@ void SiiReader::on_fetched(ByteSpan data, TimePoint now) {
 }
 
 void SiiReader::on_error(TimePoint now) {
-  end(fail(error(Errc::protocol, formatted("the memory reports an error at word {:02X}h", image_.size() / 2),
+  end(fail(error(Errc::protocol, message("the memory reports an error at word {:02X}h", image_.size() / 2),
                  "is its memory fitted and programmed, and is no other master reading it?")),
       now);
 }
@@ -178,7 +178,7 @@ void SiiReader::end(Result<Bytes> result, TimePoint now) {
   result_ = std::move(result);
 }
 
-Error SiiReader::error(Errc code, std::string what, std::string hint) const {
+Error SiiReader::error(Errc code, Message what, Message hint) const {
   return drive_error(code, node_, "its SII cannot be read: " + what, std::move(hint));
 }
 

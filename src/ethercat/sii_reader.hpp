@@ -58,7 +58,7 @@ class SiiReader {
   void take_in(ByteSpan data, TimePoint now);
   std::size_t needed() const;
   void end(Result<Bytes> result, TimePoint now);
-  Error error(Errc code, std::string what, std::string hint) const;
+  Error error(Errc code, Message what, Message hint) const;
 
   std::uint8_t node_;
   SlaveAddress slave_;

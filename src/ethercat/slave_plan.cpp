@@ -89,7 +89,7 @@ Result<SlavePlan> plan_slave(std::uint8_t node, const ProcessArea& area, const P
   if (out + in > kMaxDatagramData)
     return fail(
         drive_error(Errc::usage, node,
-                    formatted("its process data have {} bytes, a frame holds {}", out + in, kMaxDatagramData),
+                    message("its process data have {} bytes, a frame holds {}", out + in, kMaxDatagramData),
                     "map fewer objects: `pdo map`"));
   const bool out_first = area.out_start < area.in_start;
   const auto room =
@@ -98,8 +98,8 @@ Result<SlavePlan> plan_slave(std::uint8_t node, const ProcessArea& area, const P
   if (needed > room)
     return fail(
         drive_error(Errc::usage, node,
-                    formatted("its {} need {} bytes of its memory (three buffers), and {} are available",
-                              out_first ? "outputs" : "inputs", needed, room),
+                    message("its {} need {} bytes of its memory (three buffers), and {} are available",
+                            out_first ? "outputs" : "inputs", needed, room),
                     "map fewer objects: `pdo map`"));
   return SlavePlan{area, logical, static_cast<std::uint16_t>(out), static_cast<std::uint16_t>(in)};
 }

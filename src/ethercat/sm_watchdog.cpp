@@ -23,10 +23,10 @@ std::vector<Request> SmWatchdog::requests(SlaveAddress slave) const {
 Result<SmWatchdog> sm_watchdog(Duration time) {
   const auto steps = (time.count() + kStep - 1) / kStep;
   if (steps < 1 || steps > kMostSteps)
-    return fail(Errc::usage,
-                formatted("a watchdog of {} ms cannot be set",
-                          std::chrono::duration<double, std::milli>(time).count()),
-                "allowed: 0.1 ms to 6553.5 ms");
+    return fail(
+        Errc::usage,
+        message("a watchdog of {} ms cannot be set", std::chrono::duration<double, std::milli>(time).count()),
+        "allowed: 0.1 ms to 6553.5 ms");
   return SmWatchdog{reg::kDefaultWatchdogDivider, static_cast<std::uint16_t>(steps)};
 }
 

@@ -6,7 +6,7 @@ namespace servoctl::ethernet {
 
 Result<void> check_frame(ByteSpan frame) {
   if (frame.size() >= kShortestFrame && frame.size() <= kLongestFrame) return {};
-  return fail(Errc::bug, formatted("a frame that cannot be sent: {} bytes", frame.size()));
+  return fail(Errc::bug, message("a frame that cannot be sent: {} bytes", frame.size()));
 }
 
 }  // namespace servoctl::ethernet

@@ -46,29 +46,30 @@ class Facts {
   bool wireless = false;
 };
 
-std::string those_there_are() {
+Message those_there_are() {
   const auto names = ethernet_interfaces();
   if (names.empty()) return "this machine has no Ethernet interface";
-  return formatted("Ethernet interfaces: {}", fmt::join(names, ", "));
+  return message("Ethernet interfaces: {}", as_it_is(fmt::to_string(fmt::join(names, ", "))));
 }
 
 tl::unexpected<Error> missing(const std::string& name) {
   auto hint = did_you_mean(name, ethernet_interfaces());
   if (!hint.empty()) hint.insert(0, "; ");
-  return fail(Errc::bus, formatted("there is no interface {}", name),
+  return fail(Errc::bus, message("there is no interface {}", as_it_is(name)),
               those_there_are() + "; `ip link` lists all interfaces" + hint);
 }
 
 tl::unexpected<Error> no_ethernet(const std::string& name, const Facts& facts) {
   if (facts.type == ARPHRD_CAN)
-    return fail(Errc::bus, formatted("{} is a CAN interface: EtherCAT needs an Ethernet one", name),
-                formatted("for CANopen write --bus {}; {}", name, those_there_are()));
+    return fail(Errc::bus, message("{} is a CAN interface: EtherCAT needs an Ethernet one", as_it_is(name)),
+                message("for CANopen write --bus {}; {}", as_it_is(name), those_there_are()));
   if (facts.type == ARPHRD_LOOPBACK)
-    return fail(Errc::bus, formatted("{} leads back to this machine: no drive can be on it", name),
+    return fail(Errc::bus, message("{} leads back to this machine: no drive can be on it", as_it_is(name)),
                 those_there_are() + "; for simulated drives write coe:sim:FAMILY@1 or coe:local:NAME");
   if (facts.wireless)
-    return fail(Errc::bus, formatted("{} is wireless: EtherCAT needs a cable", name), those_there_are());
-  return fail(Errc::bus, formatted("{} is not an Ethernet interface", name), those_there_are());
+    return fail(Errc::bus, message("{} is wireless: EtherCAT needs a cable", as_it_is(name)),
+                those_there_are());
+  return fail(Errc::bus, message("{} is not an Ethernet interface", as_it_is(name)), those_there_are());
 }
 
 std::string own_program() {
@@ -77,7 +78,7 @@ std::string own_program() {
   return error ? "servoctl" : program.string();
 }
 
-std::string up_command(const std::string& name) { return formatted("`sudo ip link set {} up`", name); }
+Message up_command(const std::string& name) { return message("`sudo ip link set {} up`", as_it_is(name)); }
 
 }  // namespace
 
@@ -96,13 +97,13 @@ std::vector<std::string> ethernet_interfaces() {
 
 Result<int> interface_index(const std::string& name) {
   if (name.empty() || name.size() >= IFNAMSIZ || name.find('/') != std::string::npos)
-    return fail(Errc::usage, formatted("'{}' is not an interface name", name),
+    return fail(Errc::usage, message("'{}' is not an interface name", as_it_is(name)),
                 "an interface has 1 to 15 characters, such as eth0; " + those_there_are());
   const auto facts = Facts::of(name);
   if (!facts) return missing(name);
   if (!facts->takes_a_cable()) return no_ethernet(name, *facts);
   if ((facts->flags & IFF_UP) == 0)
-    return fail(Errc::bus, formatted("{} is down", name), "bring it up: " + up_command(name));
+    return fail(Errc::bus, message("{} is down", as_it_is(name)), "bring it up: " + up_command(name));
   return facts->index;
 }
 
@@ -112,36 +113,35 @@ bool has_link(const std::string& name) {
 }
 
 tl::unexpected<Error> no_link(const std::string& name) {
-  return fail(
-      Errc::bus, formatted("{} has no link: no cable, or nobody with power at its other end", name),
-      formatted("plug the cable into the IN port of the first drive and switch the drive on; `ip link "
-                "show {}` says NO-CARRIER until then",
-                name));
+  return fail(Errc::bus,
+              message("{} has no link: no cable, or nobody with power at its other end", as_it_is(name)),
+              message("plug the cable into the IN port of the first drive and switch the drive on; `ip link "
+                      "show {}` says NO-CARRIER until then",
+                      as_it_is(name)));
 }
 
 tl::unexpected<Error> no_right(const std::string& name) {
-  return fail(
-      Errc::bus, formatted("no right to send Ethernet frames on {}", name),
-      formatted("grant it to this program: `sudo setcap cap_net_raw+ep {}` (again after each update of "
-                "it), or run it with sudo",
-                own_program()));
+  return fail(Errc::bus, message("no right to send Ethernet frames on {}", as_it_is(name)),
+              message("grant it to this program: `sudo setcap cap_net_raw+ep {}` (again after each update of "
+                      "it), or run it with sudo",
+                      as_it_is(own_program())));
 }
 
 tl::unexpected<Error> interface_lost(const std::string& name, int error) {
   const auto facts = Facts::of(name);
   if (!facts)
-    return fail(Errc::bus, formatted("{} went down: the interface is gone", name),
+    return fail(Errc::bus, message("{} went down: the interface is gone", as_it_is(name)),
                 "was the adapter unplugged? plug it in, then " + up_command(name));
   if ((facts->flags & IFF_UP) == 0)
-    return fail(Errc::bus, formatted("{} went down", name), "bring it up again: " + up_command(name));
+    return fail(Errc::bus, message("{} went down", as_it_is(name)), "bring it up again: " + up_command(name));
   if ((facts->flags & IFF_RUNNING) == 0) return no_link(name);
-  return fail(Errc::bus, formatted("{} failed: {}", name, can::system_text(error)),
-              formatted("`ip -statistics link show {}` shows its state", name));
+  return fail(Errc::bus, message("{} failed: {}", as_it_is(name), can::system_text(error)),
+              message("`ip -statistics link show {}` shows its state", as_it_is(name)));
 }
 
 tl::unexpected<Error> interface_cannot_open(const std::string& name, int error) {
-  return fail(Errc::bus, formatted("cannot open {}: {}", name, can::system_text(error)),
-              formatted("`ip link show {}` shows its state", name));
+  return fail(Errc::bus, message("cannot open {}: {}", as_it_is(name), can::system_text(error)),
+              message("`ip link show {}` shows its state", as_it_is(name)));
 }
 
 }  // namespace servoctl::ethernet

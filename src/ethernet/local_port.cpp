@@ -46,24 +46,24 @@ std::string url_of(std::string_view name) { return formatted("coe:local:{}", nam
 ::pid_t known(::pid_t process) { return process > 0 ? process : -1; }
 
 tl::unexpected<Error> unserved(std::string_view name) {
-  return fail(Errc::bus, formatted("nobody serves {}", url_of(name)),
-              formatted("start `servoctl sim sv2@1 --bus {}`", url_of(name)));
+  return fail(Errc::bus, message("nobody serves {}", url_of(name)),
+              message("start `servoctl sim sv2@1 --bus {}`", as_it_is(url_of(name))));
 }
 
 tl::unexpected<Error> cannot_open(std::string_view name, int error) {
-  return fail(Errc::bus, formatted("cannot open {}: {}", url_of(name), can::system_text(error)));
+  return fail(Errc::bus, message("cannot open {}: {}", url_of(name), can::system_text(error)));
 }
 
 tl::unexpected<Error> taken(std::string_view name, ::pid_t master) {
-  return fail(Errc::bus, formatted("{} is in use by {}", url_of(name), process_words(master)),
+  return fail(Errc::bus, message("{} is in use by {}", url_of(name), process_words(master)),
               "two masters on one ring would disturb each other: end the other, or wait for its end");
 }
 
 tl::unexpected<Error> silent(std::string_view name, ::pid_t ring) {
-  return fail(Errc::bus,
-              formatted("{} does not answer: {} serves it and is stopped, or hangs", url_of(name),
-                        process_words(ring)),
-              ring > 0 ? formatted("resume it (`kill -CONT {0}`) or end it (`kill {0}`)", ring) : "");
+  return fail(
+      Errc::bus,
+      message("{} does not answer: {} serves it and is stopped, or hangs", url_of(name), process_words(ring)),
+      ring > 0 ? message("resume it (`kill -CONT {0}`) or end it (`kill {0}`)", as_it_is(ring)) : "");
 }
 
 /// What a message is, in the buffer; empty: nothing is there, zero: the other end is closed.
@@ -105,7 +105,7 @@ Result<Connected> come_to(std::string_view name, Duration patience) {
   }
   if (*size == 0) return unserved(name);
   if (*size != said.size() || !std::equal(kMagic.begin(), kMagic.end(), said.begin()))
-    return fail(Errc::bus, formatted("{} is served by another version of servoctl", url_of(name)),
+    return fail(Errc::bus, message("{} is served by another version of servoctl", url_of(name)),
                 "use the same program at both ends");
   const auto master = static_cast<::pid_t>(load_le(std::span(said).subspan<4, 4>()));
   if (master != 0) return taken(name, master);
@@ -135,7 +135,7 @@ Result<std::unique_ptr<Port>> serve_ring(std::string_view name) {
     const auto asking = open_socket();
     const bool is_known = asking && directory->connect(asking.get(), kRing) == 0;
     const auto process = is_known ? peer_process(asking.get()) : 0;
-    return fail(Errc::bus, formatted("{} is served already, by {}", url_of(name), process_words(process)),
+    return fail(Errc::bus, message("{} is served already, by {}", url_of(name), process_words(process)),
                 "choose another name, or end it");
   }
   if (const auto bound = directory->bind(listener.get(), kRing); !bound) return fail(bound.error());
@@ -146,8 +146,8 @@ Result<std::unique_ptr<Port>> serve_ring(std::string_view name) {
 }  // namespace
 
 tl::unexpected<Error> LocalMaster::lost() const {
-  return fail(Errc::bus, formatted("{} is gone: {} served it", url_of(name_), process_words(ring_)),
-              formatted("start it again: `servoctl sim sv2@1 --bus {}`", url_of(name_)));
+  return fail(Errc::bus, message("{} is gone: {} served it", url_of(name_), process_words(ring_)),
+              message("start it again: `servoctl sim sv2@1 --bus {}`", as_it_is(url_of(name_))));
 }
 
 Result<void> LocalMaster::send(ByteSpan frame) {

@@ -34,7 +34,7 @@ void PcapPort::record(Direction direction, ByteSpan frame, TimePoint time) {
   file_.put(pcap_record(form_, time.time_since_epoch() + clock_offset_, direction, frame), now());
 }
 
-std::vector<std::string> PcapPort::take_notices() {
+std::vector<Message> PcapPort::take_notices() {
   auto out = inner_->take_notices();
   if (auto notice = file_.take_notice()) out.push_back(std::move(*notice));
   return out;

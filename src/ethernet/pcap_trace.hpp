@@ -36,7 +36,7 @@ class PcapPort final : public Port {
   int poll_fd() const override { return inner_->poll_fd(); }
   Result<void> recover(TimePoint deadline) override { return inner_->recover(deadline); }
   bool has_link() const override { return inner_->has_link(); }
-  std::vector<std::string> take_notices() override;
+  std::vector<Message> take_notices() override;
   void flush_trace() override { file_.flush(now()); }
   void end_trace() override {
     inner_.reset();

@@ -43,7 +43,7 @@ class Port {
   /// Whether a cable is plugged in, with somebody at its other end; true where that cannot be known.
   virtual bool has_link() const { return true; }
   /// What people should know of the wire, a line each, since the last call.
-  virtual std::vector<std::string> take_notices() { return {}; }
+  virtual std::vector<Message> take_notices() { return {}; }
   /// Whatever is kept back for a file is written to it now.
   virtual void flush_trace() {}
   /// As can::Bus::end_trace().

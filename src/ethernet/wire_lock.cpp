@@ -48,7 +48,7 @@ tl::unexpected<Error> held(const Address& address, const std::string& shown) {
   auto hint =
       std::string("two programs on one wire would disturb each other: end the other, or wait for its end");
   if (process > 0) hint += formatted("; `ps -fp {}` shows it", process);
-  return fail(Errc::bus, formatted("{} is in use by {}", shown, process_words(process)), std::move(hint));
+  return fail(Errc::bus, message("{} is in use by {}", shown, process_words(process)), std::move(hint));
 }
 
 }  // namespace
@@ -56,10 +56,10 @@ tl::unexpected<Error> held(const Address& address, const std::string& shown) {
 Result<WireLock> WireLock::take(const std::string& key, const std::string& shown) {
   const Address address(key);
   auto socket = lock_socket();
-  if (!socket) return fail(Errc::bus, formatted("cannot lock {}: {}", shown, can::system_text(errno)));
+  if (!socket) return fail(Errc::bus, message("cannot lock {}: {}", shown, can::system_text(errno)));
   if (::bind(socket.get(), address.generic(), address.size) != 0) {
     if (errno == EADDRINUSE) return held(address, shown);
-    return fail(Errc::bus, formatted("cannot lock {}: {}", shown, can::system_text(errno)));
+    return fail(Errc::bus, message("cannot lock {}: {}", shown, can::system_text(errno)));
   }
   // Those who ask stay in its queue: it has room for all.
   ::listen(socket.get(), SOMAXCONN);

@@ -16,14 +16,15 @@ constexpr std::string_view kPlaceForm =
 constexpr std::string_view kUrlForm =
     "a gateway is written gateway://HOST, gateway://HOST:60000, gateway://HOST/NET or gateway:/run/socket";
 
-tl::unexpected<Error> wrong(std::string_view text, std::string_view what, std::string_view form) {
-  return fail(Errc::usage, formatted("'{}' is not a place of a gateway: {}", text, what), std::string(form));
+tl::unexpected<Error> wrong(std::string_view text, const Message& what, std::string_view form) {
+  return fail(Errc::usage, message("'{}' is not a place of a gateway: {}", as_it_is(text), what),
+              std::string(form));
 }
 
 Result<Address> read_path(std::string_view text, std::string_view form) {
   if (text.size() >= sizeof(sockaddr_un::sun_path))
-    return wrong(
-        text, formatted("a path of a socket has {} bytes at most", sizeof(sockaddr_un::sun_path) - 1), form);
+    return wrong(text, message("a path of a socket has {} bytes at most", sizeof(sockaddr_un::sun_path) - 1),
+                 form);
   Address out;
   out.path = text;
   return out;
@@ -41,7 +42,7 @@ Result<Address> read_host(std::string_view text, std::string_view whole, std::st
   if (colon == std::string_view::npos) return out;
   const auto port = parse_digits(text.substr(colon + 1), 10);
   if (!port || *port == 0 || *port > 0xFFFF)
-    return wrong(whole, formatted("'{}' is no port", text.substr(colon + 1)), form);
+    return wrong(whole, message("'{}' is no port", as_it_is(text.substr(colon + 1))), form);
   out.port = static_cast<std::uint16_t>(*port);
   return out;
 }
@@ -76,7 +77,7 @@ Result<Address> parse_url(std::string_view text) {
   if (!out || slash == std::string_view::npos) return out;
   const auto network = parse_digits(rest.substr(slash + 1), 10);
   if (!network || *network == 0 || *network > 0xFFFF)
-    return wrong(text, formatted("'{}' is no number of a network", rest.substr(slash + 1)), kUrlForm);
+    return wrong(text, message("'{}' is no number of a network", as_it_is(rest.substr(slash + 1))), kUrlForm);
   out->network = static_cast<std::uint16_t>(*network);
   return out;
 }

@@ -86,10 +86,10 @@ std::string failure_line(std::uint32_t sequence, const Error& error) {
   auto code = error.abort_code;
   if (error.code == Errc::timeout) code = canopen::sdo_abort::kTimeout;
   if (error.code == Errc::protocol) code = canopen::sdo_abort::kCommand;
-  if (!code) return error_line(sequence, Code::internal_state, error.message);
-  auto why = error.code == Errc::protocol ? printable(error.message) : canopen::sdo_abort_text(*code);
+  if (!code) return error_line(sequence, Code::internal_state, error.message.text());
+  auto why = error.code == Errc::protocol ? printable(error.message.text()) : canopen::sdo_abort_text(*code);
   // What is known of a node that did not answer in time is what to do about it.
-  if (error.code == Errc::timeout && !error.hint.empty()) why += ": " + printable(error.hint);
+  if (error.code == Errc::timeout && !error.hint.empty()) why += ": " + printable(error.hint.text());
   return formatted("[{}] ERROR:0x{:08X} #{}.\r\n", sequence, *code, why);
 }
 

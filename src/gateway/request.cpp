@@ -76,8 +76,8 @@ Result<ObjectAddress> object_of(const Request& request) {
   };
   const auto index = parse_unsigned(word(1));
   const auto sub = parse_unsigned(word(2));
-  if (!index || *index > 0xFFFF) return fail(Errc::usage, formatted("'{}' is not an index", word(1)));
-  if (!sub || *sub > 0xFF) return fail(Errc::usage, formatted("'{}' is not a sub-index", word(2)));
+  if (!index || *index > 0xFFFF) return fail(Errc::usage, message("'{}' is not an index", as_it_is(word(1))));
+  if (!sub || *sub > 0xFF) return fail(Errc::usage, message("'{}' is not a sub-index", as_it_is(word(2))));
   return ObjectAddress{static_cast<std::uint16_t>(*index), static_cast<std::uint8_t>(*sub)};
 }
 

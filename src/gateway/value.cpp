@@ -44,7 +44,7 @@ constexpr std::uint64_t kMostMilliseconds = 0x0FFF'FFFF;
 constexpr std::uint64_t kMostDays = 0xFFFF;
 
 tl::unexpected<Error> no_value(std::string_view words) {
-  return fail(Errc::usage, formatted("'{}' is not a value of this type", words));
+  return fail(Errc::usage, message("'{}' is not a value of this type", as_it_is(words)));
 }
 
 Result<Bytes> parse_time(std::span<const std::string> words) {

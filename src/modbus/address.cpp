@@ -14,7 +14,7 @@ constexpr std::string_view kSerialForm =
     "stop bits), with ,ascii for ASCII frames";
 constexpr std::string_view kTcpForm = "a device on TCP is written modbus://HOST or modbus://HOST:502";
 
-tl::unexpected<Error> wrong(std::string what, std::string_view form) {
+tl::unexpected<Error> wrong(servoctl::Message what, std::string_view form) {
   return fail(Errc::usage, std::move(what), std::string(form));
 }
 
@@ -33,7 +33,7 @@ bool read_characters(std::string_view text, SerialSettings& out) {
 Result<void> read_part(std::string_view part, bool first, SerialSettings& out) {
   if (first) {
     const auto baud = can::parse_baud(part);
-    if (!baud) return wrong(formatted("'{}' is not a speed in bits per second", part), kSerialForm);
+    if (!baud) return wrong(message("'{}' is not a speed in bits per second", as_it_is(part)), kSerialForm);
     out.line.baud = *baud;
     return {};
   }
@@ -42,7 +42,7 @@ Result<void> read_part(std::string_view part, bool first, SerialSettings& out) {
   else if (equals_nocase(part, "rtu"))
     out.framing = Framing::rtu;
   else if (!read_characters(part, out))
-    return wrong(formatted("'{}' is not the form of a character: write 8E1, 8N1, 8O1 or 8N2", part),
+    return wrong(message("'{}' is not the form of a character: write 8E1, 8N1, 8O1 or 8N2", as_it_is(part)),
                  kSerialForm);
   return {};
 }
@@ -78,7 +78,7 @@ Result<TcpAddress> parse_tcp(std::string_view text) {
   std::string_view port;
   if (text.starts_with('[')) {
     const auto end = text.find(']');
-    if (end == std::string_view::npos) return wrong(formatted("'{}': ] is missing", text), kTcpForm);
+    if (end == std::string_view::npos) return wrong(message("'{}': ] is missing", as_it_is(text)), kTcpForm);
     out.host = std::string(text.substr(1, end - 1));
     if (end + 1 < text.size()) port = text.substr(end + 1);
   } else {
@@ -90,7 +90,7 @@ Result<TcpAddress> parse_tcp(std::string_view text) {
   if (port.empty()) return out;
   const auto number = port.front() == ':' ? parse_digits(port.substr(1), 10) : std::nullopt;
   if (!number || *number == 0 || *number > 65535)
-    return wrong(formatted("'{}' is not a TCP port", port), kTcpForm);
+    return wrong(message("'{}' is not a TCP port", as_it_is(port)), kTcpForm);
   out.port = static_cast<std::uint16_t>(*number);
   return out;
 }

@@ -99,7 +99,7 @@ Result<std::unique_ptr<Listener>> listen_tcp(const TcpAddress& address) {
   addrinfo* found = nullptr;
   const auto port = std::to_string(address.port);
   if (const int code = ::getaddrinfo(address.host.c_str(), port.c_str(), &hints, &found); code != 0)
-    return fail(Errc::bus, formatted("{} is not found: {}", address.host, ::gai_strerror(code)),
+    return fail(Errc::bus, message("{} is not found: {}", as_it_is(address.host), ::gai_strerror(code)),
                 "name an address of this machine: modbus://127.0.0.1:1502");
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owned(found, &::freeaddrinfo);
   Descriptor fd(::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
@@ -108,7 +108,7 @@ Result<std::unique_ptr<Listener>> listen_tcp(const TcpAddress& address) {
   if (fd && ::bind(fd.get(), found->ai_addr, found->ai_addrlen) == 0 && ::listen(fd.get(), 8) == 0)
     return std::make_unique<TcpListener>(std::move(fd));
   const int error = errno;
-  const auto what = formatted("cannot listen at {}: ", address.text());
+  const auto what = message("cannot listen at {}: ", as_it_is(address.text()));
   if (error == EACCES)
     return fail(Errc::bus, what + "ports below 1024 need the right to them",
                 "use another: modbus://127.0.0.1:1502");

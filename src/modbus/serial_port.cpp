@@ -28,7 +28,7 @@ Duration SerialPort::silence() const {
 }
 
 tl::unexpected<Error> SerialPort::not_open() const {
-  return fail(Errc::bus, formatted("{} is gone", settings_.line.device),
+  return fail(Errc::bus, message("{} is gone", settings_.line.device),
               "was the adapter unplugged? plug it in again");
 }
 

@@ -27,7 +27,7 @@ Result<can::TcpClient> connect_to(const TcpAddress& address, TimePoint limit) {
 }  // namespace
 
 tl::unexpected<Error> TcpPort::not_connected() const {
-  return fail(Errc::bus, formatted("the connection to {} is lost", address_.text()),
+  return fail(Errc::bus, message("the connection to {} is lost", address_.text()),
               "the next line connects anew");
 }
 

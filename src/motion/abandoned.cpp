@@ -74,7 +74,7 @@ void stop_abandoned(show::Desk& desk, const std::set<std::uint8_t>& nodes) {
       continue;
     }
     if (done) {
-      desk.tell("notice: " + disabled_notice(node) + "\n");
+      desk.tell("notice: " + disabled_notice(node).text() + "\n");
       continue;
     }
     auto error = done.error();

@@ -74,7 +74,7 @@ Result<FaultReset> check_power(session::Session& session, std::uint8_t node) {
   if (!drive::is_energised(*state)) return FaultReset::done;
   return fail(
       drive_error(Errc::negative, node,
-                  formatted("its fault is reset, but it is energised: it is in {}", drive::name(*state)),
+                  message("its fault is reset, but it is energised: it is in {}", drive::name(*state)),
                   "another master controls it; stop and disable it, or switch off its supply"));
 }
 
@@ -86,7 +86,7 @@ Result<bool> needs_reset(session::Session& session, std::uint8_t node) {
   if (!drive::is_energised(*state)) return false;
   return fail(
       drive_error(Errc::refused, node,
-                  formatted("it is in {}, not in Fault: a reset would de-energise it", drive::name(*state)),
+                  message("it is in {}, not in Fault: a reset would de-energise it", drive::name(*state)),
                   "stop and disable it first"));
 }
 
@@ -130,8 +130,8 @@ Result<FaultReset> reset_fault(session::Session& session, const drive::Profile* 
                          ? &*profile->rules.fault.reset_enabled_by
                          : nullptr;
   if (gate != nullptr)
-    error.hint += formatted("; this family resets faults only where {} is {}",
-                            drive::target_at(profile, gate->object).in_sentence(), gate->value);
+    error.hint += message("; this family resets faults only where {} is {}",
+                          drive::target_at(profile, gate->object).in_sentence(), gate->value);
   return fail(std::move(error));
 }
 

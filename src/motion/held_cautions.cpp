@@ -23,39 +23,41 @@ std::string condition_text(const HeldCaution& held) {
 }
 
 /// What to do about a refusal: change the parameter, on the bus or on the panel.
-std::string remedy(const HeldCaution& held, const MotionUnits& units) {
+Message remedy(const HeldCaution& held, const MotionUnits& units) {
   const auto& rule = *held.rule;
   const auto ending = show::ending_setting(rule);
   if (ending.empty()) return "use another method or motion";
   const bool restart = show::needs_restart(units.profile(), rule);
   if (!rule.others.empty())
-    return formatted("`{}` and restart the drive; any of these inputs will do",
-                     lasting_setting(units.profile(), units.node(), rule.name, *rule.set));
+    return message("`{}` and restart the drive; any of these inputs will do",
+                   as_it_is(lasting_setting(units.profile(), units.node(), rule.name, *rule.set)));
   if (!held.unread && units.object(rule.name))
-    return restart ? formatted("`{}` and restart the drive",
-                               lasting_setting(units.profile(), units.node(), rule.name, *rule.set))
-                   : formatted("`param set {}={} -n {}` ends that", rule.name, *rule.set, units.node());
-  return restart ? formatted("set {} on the panel and restart the drive, then add --panel {}={}", ending,
-                             rule.name, *rule.set)
-                 : formatted("set {} on the panel, then add --panel {}={}", ending, rule.name, *rule.set);
+    return restart ? message("`{}` and restart the drive",
+                             as_it_is(lasting_setting(units.profile(), units.node(), rule.name, *rule.set)))
+                   : message("`param set {}={} -n {}` ends that", as_it_is(rule.name), *rule.set,
+                             node_name(units.node()));
+  return restart
+             ? message("set {} on the panel and restart the drive, then add --panel {}={}", ending,
+                       as_it_is(rule.name), *rule.set)
+             : message("set {} on the panel, then add --panel {}={}", ending, as_it_is(rule.name), *rule.set);
 }
 
-Error refusal(const HeldCaution& held, const MotionUnits& units, const std::string& what) {
+Error refusal(const HeldCaution& held, const MotionUnits& units, const Message& what) {
   const auto because =
-      held.unread ? formatted("{} cannot be read; assumed: {}", held.rule->name, condition_text(held))
-                  : condition_text(held);
-  return drive_error(Errc::refused, units.node(), formatted("{}: {}", what, because), remedy(held, units));
+      held.unread ? message("{} cannot be read; assumed: {}", as_it_is(held.rule->name), condition_text(held))
+                  : Message(condition_text(held));
+  return drive_error(Errc::refused, units.node(), message("{}: {}", what, because), remedy(held, units));
 }
 
 Result<void> check_method(const HeldCaution& held, const MotionUnits& units, std::int64_t method) {
   const auto& rule = *held.rule;
   if (std::find(rule.methods.begin(), rule.methods.end(), method) != rule.methods.end())
-    return fail(refusal(held, units, formatted("homing method {} is not possible", method)));
+    return fail(refusal(held, units, message("homing method {} is not possible", method)));
   for (const auto input : drive::switches_of(units.profile().rules.motion, method))
     if (rule.masks_input(input))
-      return fail(refusal(
-          held, units,
-          formatted("homing method {} needs {}, which the drive ignores", method, show::name(input))));
+      return fail(
+          refusal(held, units,
+                  message("homing method {} needs {}, which the drive ignores", method, show::name(input))));
   return {};
 }
 
@@ -163,7 +165,7 @@ Result<PanelValues> checked_panel(const drive::Profile& profile, const PanelValu
     const auto parameter = drive::resolve_parameter(profile, name);
     if (!parameter) return fail(parameter.error());
     if ((*parameter)->object)
-      return fail(Errc::usage, formatted("--panel {}: servoctl reads this parameter from the drive", name),
+      return fail(Errc::usage, message("--panel {}: servoctl reads this parameter from the drive", name),
                   "leave it out");
     out[(*parameter)->id] = value;
   }

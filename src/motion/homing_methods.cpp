@@ -45,9 +45,8 @@ Result<void> check_homing(const std::vector<std::int64_t>& supported, std::int64
                           std::uint8_t node) {
   if (supported.empty() || std::find(supported.begin(), supported.end(), method) != supported.end())
     return {};
-  return fail(drive_error(Errc::refused, node,
-                          formatted("the drive does not support homing method {}", method),
-                          formatted("its methods by 0x60E3: {}", fmt::join(supported, ", "))));
+  return fail(drive_error(Errc::refused, node, message("the drive does not support homing method {}", method),
+                          message("its methods by 0x60E3: {}", fmt::join(supported, ", "))));
 }
 
 }  // namespace servoctl::motion

@@ -26,7 +26,7 @@ Result<void> renew_op(session::Session& session, std::uint8_t node) {
   if (back) back = network.request_state(node, session::NodeState::operational);
   if (back) return {};
   auto error = back.error();
-  error.message = formatted(
+  error.message = message(
       "it was in {} before and is in {} now: {}", network.state_word(session::NodeState::operational),
       network.state_word(session.watch().state(node).value_or(session::NodeState::unknown)), error.message);
   return fail(std::move(error));

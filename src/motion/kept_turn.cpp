@@ -38,7 +38,7 @@ std::string seal_of(const KeptTurn& turn, std::uint8_t node) {
   return checksum_of(report::to_json(body_of(turn, node)));
 }
 
-tl::unexpected<Error> damaged(std::string message) {
+tl::unexpected<Error> damaged(Message message) {
   return fail(Errc::file, std::move(message),
               "`units learn` measures again, `units forget` deletes the file");
 }
@@ -62,7 +62,8 @@ Result<KeptTurn> parse(const Value& document, const std::string& file, std::uint
   if (fields.error()) return damaged(*fields.error());
   out.identity = *identity;
   if (seal != seal_of(out, node))
-    return damaged(formatted("{}: its seal does not match: the file was changed after it was written", file));
+    return damaged(
+        message("{}: its seal does not match: the file was changed after it was written", as_it_is(file)));
   return out;
 }
 
@@ -70,7 +71,7 @@ Result<KeptTurn> parse(const Value& document, const std::string& file, std::uint
 std::string reason_against(const show::Desk& desk, std::uint8_t node, const KeptTurn& kept) {
   if (kept.family != desk.profile->family) return formatted("they were measured with -d {}", kept.family);
   const auto now = session::read_identity(*desk.session, node);
-  if (!now) return now.error().message;
+  if (!now) return now.error().message.text();
   const auto change = show::change_of(kept.identity, *now);
   return change.empty() ? change : change + " is not the one of the drive that was measured";
 }
@@ -105,7 +106,7 @@ Result<bool> TurnFile::remove() const {
   if (path_.empty()) return false;
   std::error_code error;
   const bool removed = std::filesystem::remove(path_, error);
-  if (error) return fail(Errc::file, formatted("{}: {}", path_.string(), error.message()));
+  if (error) return fail(Errc::file, message("{}: {}", as_it_is(path_.string()), error.message()));
   return removed;
 }
 
@@ -131,7 +132,7 @@ KnownTurn find_turn(const show::Desk& desk, std::uint8_t node) {
   out.told_earlier = told_earlier(desk, node);
   if (desk.profile->rules.learn.speed.empty()) return out;
   const auto kept = TurnFile(desk, node).read();
-  if (!kept) out.unused = kept.error().message;
+  if (!kept) out.unused = kept.error().message.text();
   if (!kept || !*kept) return out;
   out.kept = **kept;
   out.unused = reason_against(desk, node, *out.kept);

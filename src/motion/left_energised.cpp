@@ -14,20 +14,20 @@ std::string energised_notice(const session::Session& session, std::uint8_t node)
   return formatted("node {} IS ENERGISED and not supervised; `disable -n {}` de-energises it", node, node);
 }
 
-std::string disabled_notice(std::uint8_t node) {
-  return formatted("node {} was still energised; it has been stopped and disabled", node);
+Message disabled_notice(std::uint8_t node) {
+  return message("node {} was still energised; it has been stopped and disabled", node_name(node));
 }
 
 Error ended_in_fault(std::uint8_t node) {
   return drive_error(Errc::negative, node,
-                     formatted("it had been enabled; it is de-energised now, but in fault, and may not have "
-                               "obeyed the stop: `fault show -n {}` shows the fault",
-                               node),
+                     message("it had been enabled; it is de-energised now, but in fault, and may not have "
+                             "obeyed the stop: `fault show -n {}` shows the fault",
+                             node_name(node)),
                      "find the cause of the fault before the drive is enabled again");
 }
 
-std::string power_warning(std::uint8_t node, std::string_view why) {
-  return formatted("NODE {} MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY: {}", node, why);
+Message power_warning(std::uint8_t node, const Message& why) {
+  return message("NODE {} MAY STILL BE ENERGISED: SWITCH OFF THE SUPPLY: {}", node, why);
 }
 
 namespace {
@@ -62,14 +62,14 @@ void tell_left_energised(show::Desk& desk, const std::set<std::uint8_t>& nodes) 
     if (state && drive::is_energised(*state)) {
       desk.notices.push_back(energised_notice(session, node));
     } else if (state && session.energised().contains(node)) {
-      desk.notices.push_back(formatted(
+      desk.notices.push_back(message(
           "node {} is in {}, and 6040h may still hold \"enable operation\": it may become energised by "
           "itself; `disable -n {}` clears it",
-          node, drive::name(*state), node));
+          node_name(node), drive::name(*state), node_name(node)));
     } else if (!state && state.error().code != Errc::sdo_abort) {
       auto error = state.error();
       error.message =
-          formatted("node {} MAY BE ENERGISED: state not known ({})", node, state.error().message);
+          message("node {} MAY BE ENERGISED: state not known ({})", node_name(node), state.error().message);
       error.node = node;
       desk.errors.push_back(std::move(error));
     }

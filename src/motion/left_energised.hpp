@@ -13,10 +13,10 @@ namespace servoctl::motion {
 std::string energised_notice(const session::Session& session, std::uint8_t node);
 
 /// Of one that was left energised: `node 1 was left energised; it is stopped and disabled now`.
-std::string disabled_notice(std::uint8_t node);
+Message disabled_notice(std::uint8_t node);
 
 /// Of one whose power could not be taken away: what the user has to do, and why.
-std::string power_warning(std::uint8_t node, std::string_view why);
+Message power_warning(std::uint8_t node, const Message& why);
 
 /// Of one that was enabled, and is in fault where it should be stopped and disabled.
 Error ended_in_fault(std::uint8_t node);

@@ -64,8 +64,8 @@ Error Motion::without_first_axis(Error error) const {
   const auto others = other_axes(*session_, profile_, node_);
   if (others.empty()) return error;
   return drive_error(Errc::refused, node_,
-                     formatted("it has no axis 1 ({}), which servoctl commands: {}",
-                               to_string(objects::kStatusword), others.front().text()),
+                     message("it has no axis 1 ({}), which servoctl commands: {}",
+                             to_string(objects::kStatusword), others.front().text()),
                      "servoctl cannot command another axis yet; `read` and `write` reach its objects");
 }
 
@@ -274,7 +274,7 @@ MotionReport Motion::finish(Result<void> outcome) {
   if (out.outcome && out.begun && fault)
     out.outcome =
         fail(error(Errc::negative,
-                   formatted("went to fault while it was stopped (statusword 0x{:04X})", out.end.statusword),
+                   message("went to fault while it was stopped (statusword 0x{:04X})", out.end.statusword),
                    "`fault show` shows the fault"));
   try {
     out.samples = monitor_->samples();

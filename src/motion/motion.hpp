@@ -160,7 +160,7 @@ class Motion {
   std::uint8_t node() const { return node_; }
   session::Session& session() { return *session_; }
   const WatchdogPlan& watchdog() const { return watchdog_; }
-  Error error(Errc code, const std::string& what, std::string hint = {}) const {
+  Error error(Errc code, const Message& what, Message hint = {}) const {
     return drive_error(code, node_, what, std::move(hint));
   }
 

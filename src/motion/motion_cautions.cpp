@@ -19,11 +19,12 @@ Result<void> Motion::check_units_in_force() const {
       for (const auto& way : ways) {
         const auto objects = way.objects();
         if (std::ranges::find(objects, value.object) == objects.end()) continue;
-        return fail(drive_error(
-            Errc::refused, node_, value.object,
-            formatted("what a turn of the motor is, is not known: {}: {}", show::owed_lead(waiting),
-                      show::owed_text(profile_, node_, waiting, false)),
-            formatted("restart the drive first; `status --restarted -n {}` says that it was", node_)));
+        return fail(
+            drive_error(Errc::refused, node_, value.object,
+                        message("what a turn of the motor is, is not known: {}: {}", show::owed_lead(waiting),
+                                show::owed_text(profile_, node_, waiting, false)),
+                        message("restart the drive first; `status --restarted -n {}` says that it was",
+                                node_name(node_))));
       }
   return {};
 }
@@ -78,7 +79,7 @@ Result<double> Motion::find_unconverted_cap(std::optional<double> most) {
     return std::min(safe, most.value_or(safe));
   }
   return fail(Errc::usage, "no safe speed is known for this drive: its speeds cannot be converted to rpm",
-              formatted("add --limit in {}", unit.empty() ? "the drive's own unit" : unit));
+              message("add --limit in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 
 /// What limits the speed while the counts of a turn are not known.
@@ -98,9 +99,8 @@ std::string Motion::unconverted_limit() const {
 
 Error unproven_speed(const Motion& motion) {
   const auto unit = motion.units().unit(objects::kTargetVelocity);
-  return motion.error(
-      Errc::refused, "no speed given, and the drive's own speed cannot be converted to rpm",
-      formatted("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
+  return motion.error(Errc::refused, "no speed given, and the drive's own speed cannot be converted to rpm",
+                      message("add --speed and --limit in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 
 }  // namespace servoctl::motion

@@ -84,7 +84,7 @@ Result<void> MotionGuard::change(ObjectAddress object, const Bytes& data) {
   if (before->size() != data.size())
     return fail(drive_error(
         Errc::refused, node_, object,
-        formatted("has {} bytes in this drive, not {} as its data say", before->size(), data.size()),
+        message("has {} bytes in this drive, not {} as its data say", before->size(), data.size()),
         "the data are those of another drive or firmware; the motor was not moved"));
   if (rehearsed == nullptr && *before == data) return {};
   // Noted first: an answer that is lost may belong to a write that was done.
@@ -213,10 +213,10 @@ Result<void> MotionGuard::enable() {
   if (const auto foreign = foreign_command())
     return fail(Errc::negative,
                 foreign->by_pdo()
-                    ? formatted("another master sends PDOs with object {}: the drive was not enabled",
-                                to_string(foreign->object))
-                    : formatted("another master has written object {}: the drive was not enabled",
-                                to_string(foreign->object)),
+                    ? message("another master sends PDOs with object {}: the drive was not enabled",
+                              to_string(foreign->object))
+                    : message("another master has written object {}: the drive was not enabled",
+                              to_string(foreign->object)),
                 std::string(kTwoMasters));
   energised_ = true;
   if (rehearsal_ == nullptr) return power_.reach(DriveState::operation_enabled);

@@ -48,7 +48,8 @@ void MotionGuard::return_to_op() {
     (void)session_->network().end_exchange(node_);
     return;
   }
-  if (const auto back = renew_op(*session_, node_); !back) result_.notes.push_back(back.error().message);
+  if (const auto back = renew_op(*session_, node_); !back)
+    result_.notes.push_back(back.error().message.text());
 }
 
 /// Of the mode that was chosen; in one that goes to a position no target stops the motor.
@@ -94,12 +95,12 @@ void MotionGuard::bring_down() {
   else if (!done.outcome)
     result_.left.push_back(
         (powered_ ? "it could not be de-energised: " : "its last controlword was not accepted: ") +
-        done.outcome.error().message);
+        done.outcome.error().message.text());
   if (lost_) disarm();
 }
 
 void MotionGuard::note(const std::string& what, const Error& error) {
-  result_.left.push_back(formatted("{}: {}", what, error.message));
+  result_.left.push_back(formatted("{}: {}", what, error.message.text()));
 }
 
 /// Some drives take a refused write for a fault.

@@ -53,7 +53,7 @@ class Homing {
     if (*ended) return {};
     return fail(motion_->error(
         Errc::negative,
-        formatted("no home found in {} s", std::chrono::duration<double>(plan_->longest).count()),
+        message("no home found in {} s", std::chrono::duration<double>(plan_->longest).count()),
         "check that the switch and the index pulse come; `--within` allows more time"));
   }
 
@@ -76,7 +76,7 @@ class Homing {
     stale_error_ = stale_error_ && is_error(sample.statusword) && sample.time - started_at_ < kStart;
     if (is_error(sample.statusword) && !stale_error_)
       return fail(motion_->error(
-          Errc::negative, formatted("ended homing with an error (statusword 0x{:04X})", sample.statusword),
+          Errc::negative, message("ended homing with an error (statusword 0x{:04X})", sample.statusword),
           "switch stuck, wrong method or a limit in the way; see also `fault show`"));
     const bool done = is_done(sample.statusword);
     seen_low_ = seen_low_ || !done;
@@ -128,9 +128,10 @@ class Homing {
 Result<void> add(const Motion& motion, ObjectAddress object, const std::string& text, MotionPlan& plan) {
   if (text.empty()) return {};
   if (!motion.units().has(object))
-    return fail(motion.error(
-        Errc::usage, formatted("{} has no object {}", motion.units().profile().family, to_string(object)),
-        "leave this option out"));
+    return fail(motion.error(Errc::usage,
+                             message("{} has no object {}", as_it_is(motion.units().profile().family),
+                                     as_it_is(to_string(object))),
+                             "leave this option out"));
   const bool is_way = object == objects::kHomeOffset;
   const auto data =
       motion.units().parse(object, text, is_way ? MotionUnits::Kind::way : MotionUnits::Kind::size);
@@ -157,12 +158,12 @@ Result<void> check_method(Motion& motion, MotionPlan& plan) {
   const auto& nothing = motion.rules().no_homing;
   if (number == kNoMethod || std::find(nothing.begin(), nothing.end(), number) != nothing.end())
     return fail(motion.error(
-        Errc::refused, formatted("homing method {} (6098h) does nothing: no homing would occur", number),
-        formatted("give one: `home METHOD -n {}`; {}, `write 0x6098 METHOD` sets one", motion.node(),
-                  meaning.labels != nullptr ? "`objects 0x6098` lists them" : "the manual lists them")));
+        Errc::refused, message("homing method {} (6098h) does nothing: no homing would occur", number),
+        message("give one: `home METHOD -n {}`; {}, `write 0x6098 METHOD` sets one", node_name(motion.node()),
+                meaning.labels != nullptr ? "`objects 0x6098` lists them" : "the manual lists them")));
   const auto* label = drive::label_of(meaning, *value);
   if (meaning.labels != nullptr && label == nullptr)
-    return fail(motion.error(Errc::refused, formatted("this family has no homing method {}", number),
+    return fail(motion.error(Errc::refused, message("this family has no homing method {}", number),
                              "`objects 0x6098` lists them"));
   const auto supported = supported_homing(motion.session(), motion.units().profile(), motion.node());
   if (!supported) return fail(supported.error());
@@ -181,7 +182,7 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
   if (!speed || speed->unit != motion.units().unit(objects::kTargetVelocity))
     return fail(motion.error(
         Errc::refused,
-        formatted("its homing speed ({}) cannot be compared with its speed limit", to_string(object)),
+        message("its homing speed ({}) cannot be compared with its speed limit", as_it_is(to_string(object))),
         motion.is_told_turn()
             ? ""
             : "add --turn (6064h increments per revolution), if the drive does not report it"));
@@ -194,11 +195,11 @@ Result<Physical> speed_of(Motion& motion, ObjectAddress object, const MotionPlan
   const bool fast = object == objects::kHomingSpeedSwitch;
   return fail(motion.error(
       Errc::refused,
-      formatted("its homing speed ({}) is {} {}: homing would never end", to_string(object),
-                number_text(speed->value), speed->unit),
-      formatted("add {}; `write {} …` sets it",
-                fast ? "--speed 30rpm (and --search 6rpm where 0x6099:2 is 0, too)" : "--search 6rpm",
-                to_string(object))));
+      message("its homing speed ({}) is {} {}: homing would never end", as_it_is(to_string(object)),
+              number_text(speed->value), speed->unit),
+      message("add {}; `write {} …` sets it",
+              fast ? "--speed 30rpm (and --search 6rpm where 0x6099:2 is 0, too)" : "--search 6rpm",
+              as_it_is(to_string(object)))));
 }
 
 /// From the way that --window leaves it and its speeds; a way that is not known has a time of its own.

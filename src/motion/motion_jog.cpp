@@ -125,8 +125,8 @@ class Jogging {
     turned_before_ = turned_before_ || (!wrong && std::abs(*speed) > std::abs(wanted) * kTurningPart);
     if (wrong_looks_ >= kWrongLooks)
       return fail(motion_->error(Errc::negative,
-                                 formatted("turns the wrong way: {} {} instead of {}", number_text(*speed),
-                                           plan_->unit, number_text(wanted)),
+                                 message("turns the wrong way: {} {} instead of {}", number_text(*speed),
+                                         plan_->unit, number_text(wanted)),
                                  "check encoder direction, polarity (607Eh), motor wiring"));
     if (settled && std::abs(*speed) < std::abs(wanted) * kTurningPart)
       return fail(motion_->error(Errc::negative, "does not turn although commanded to",
@@ -134,8 +134,8 @@ class Jogging {
     // Ramps of the user's own take their time.
     if (settled && !motion_->has_own_ramps() && std::abs(*speed) < std::abs(wanted) * kLeastPartOfSpeed)
       return fail(motion_->error(Errc::negative,
-                                 formatted("turns at {} {}, less than half of the {} that were commanded",
-                                           number_text(*speed), plan_->unit, number_text(wanted)),
+                                 message("turns at {} {}, less than half of the {} that were commanded",
+                                         number_text(*speed), plan_->unit, number_text(wanted)),
                                  "is it blocked, or is its speed limited (607Fh, 6080h)?"));
     return {};
   }
@@ -161,7 +161,7 @@ class Jogging {
 /// The way of so many turns in the unit of the position.
 Result<double> way_of(const Motion& motion, double turns) {
   if (!(std::abs(turns) <= kMostTurns))
-    return fail(Errc::usage, formatted("--turns: more than {} turns are no jog", number_text(kMostTurns)));
+    return fail(Errc::usage, message("--turns: more than {} turns are no jog", number_text(kMostTurns)));
   if (motion.units().unit(objects::kPositionActual) == "deg") return std::abs(turns) * kDegreesATurn;
   return fail(motion.error(Errc::usage, "does not report its counts per motor revolution",
                            "add --turn (6064h increments per revolution), or use --for TIME"));

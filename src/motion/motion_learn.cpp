@@ -115,8 +115,8 @@ class Learning {
     if (std::abs(*rpm) > std::abs(learn_->rpm) * kTooFast + kNoise)
       return fail(
           motion_->error(Errc::negative,
-                         formatted("turns too fast: {} shows {} rpm instead of {}", learn_->monitor_name,
-                                   number_text(*rpm), number_text(std::abs(learn_->rpm))),
+                         message("turns too fast: {} shows {} rpm instead of {}", learn_->monitor_name,
+                                 number_text(*rpm), number_text(std::abs(learn_->rpm))),
                          "fewer encoder counts than the family's data says? " + std::string(kOtherWay)));
     const auto position = sample[Signal::position];
     if (!position)
@@ -156,14 +156,14 @@ class Learning {
   Error shows_nothing(double speed) const {
     return motion_->error(
         Errc::negative,
-        formatted("turns at {} inc/s by 606Ch, but {} shows {} rpm: not usable", number_text(speed),
-                  learn_->monitor_name, number_text(shown_)),
+        message("turns at {} inc/s by 606Ch, but {} shows {} rpm: not usable", number_text(speed),
+                learn_->monitor_name, number_text(shown_)),
         (fastest_ && speed >= *fastest_ ? "607Fh limits it; " : "") + std::string(kOtherWay));
   }
   Error lies(double speed) const {
     return motion_->error(
         Errc::negative,
-        formatted(
+        message(
             "turns at {} inc/s by 606Ch, but {} shows {} rpm, which contradicts its values at other speeds",
             number_text(speed), learn_->monitor_name, number_text(shown_)),
         std::string(kOtherWay));

@@ -47,9 +47,10 @@ Result<void> Motion::read_limits() {
     // Of a torque that is asked for it is the ceiling as well; other motions are refused by check_speed().
     if (row.signal == Signal::torque && !units_->has(object) && rules().torque) continue;
     if (!units_->has(object))
-      return fail(Errc::usage,
-                  formatted("this family does not report its {} ({})", name(row.signal), to_string(object)),
-                  "leave this limit out");
+      return fail(
+          Errc::usage,
+          message("this family does not report its {} ({})", name(row.signal), as_it_is(to_string(object))),
+          "leave this limit out");
     const auto value = parse_limit(object, row.option, *row.text);
     if (!value) return fail(value.error());
     *row.out = *value;
@@ -59,7 +60,7 @@ Result<void> Motion::read_limits() {
       units_->parse(objects::kProfileAcceleration, options_.acceleration, MotionUnits::Kind::size);
   if (!ramp) return fail(ramp.error());
   if (ramp->value.value > 0) return {};
-  return fail(Errc::usage, formatted("--accel: '{}' is not a ramp", options_.acceleration),
+  return fail(Errc::usage, message("--accel: '{}' is not a ramp", as_it_is(options_.acceleration)),
               "a ramp must be above 0, without a sign");
 }
 
@@ -68,14 +69,14 @@ Result<double> Motion::parse_limit(ObjectAddress object, std::string_view option
   const auto value = units_->parse_physical(object, text, MotionUnits::Kind::size);
   if (!value) {
     auto error = value.error();
-    error.message = formatted("{}: {}", option, error.message);
+    error.message = message("{}: {}", option, error.message);
     return fail(std::move(error));
   }
   if (object == objects::kTargetVelocity && value->unit == "rpm" && value->value > kMostRpm)
-    return fail(Errc::usage, formatted("{}: '{}' is more than any motor turns", option, text),
-                formatted("the greatest limit is {} rpm", number_text(kMostRpm)));
+    return fail(Errc::usage, message("{}: '{}' is more than any motor turns", option, as_it_is(text)),
+                message("the greatest limit is {} rpm", number_text(kMostRpm)));
   if (value->value > 0) return value->value;
-  return fail(Errc::usage, formatted("{}: '{}' is not a limit", option, text),
+  return fail(Errc::usage, message("{}: '{}' is not a limit", option, as_it_is(text)),
               "a limit must be above 0, without a sign");
 }
 
@@ -119,8 +120,8 @@ Result<void> Motion::check_turn(const MotionSample& sample) {
   fast_looks_ = std::abs(**shown) > most ? fast_looks_ + 1 : 0;
   if (fast_looks_ < kOddLooks) return {};
   return fail(error(Errc::negative,
-                    formatted("turns at {} rpm by {}, but {} rpm were asked for", number_text(**shown),
-                              profile_->rules.learn.speed, number_text(*told_rpm_)),
+                    message("turns at {} rpm by {}, but {} rpm were asked for", number_text(**shown),
+                            profile_->rules.learn.speed, number_text(*told_rpm_)),
                     "its counts per revolution are probably wrong: `units learn` measures them, --turn takes "
                     "those of 6064h"));
 }
@@ -143,8 +144,8 @@ Error Motion::quarrel(double shown, double speed) const {
   const auto& name = profile_->rules.learn.speed;
   if (units_->uses_learned())
     return error(Errc::negative,
-                 formatted("turns at {} rpm by {}, but at {} rpm by the kept counts per revolution",
-                           number_text(shown), name, number_text(speed)),
+                 message("turns at {} rpm by {}, but at {} rpm by the kept counts per revolution",
+                         number_text(shown), name, number_text(speed)),
                  "another motor or drive? `units learn` measures again, `units forget` deletes the counts");
   auto hint = restart_note(*profile_, *units_->turn_way());
   if (!hint.empty()) hint += "; ";
@@ -155,8 +156,8 @@ Error Motion::quarrel(double shown, double speed) const {
           name);
   return error(
       Errc::negative,
-      formatted("turns at {} rpm by {}, but at {} rpm by the {} increments per revolution in its parameters",
-                number_text(shown), name, number_text(speed), plain_number(units_->turn().value_or(0), 12)),
+      message("turns at {} rpm by {}, but at {} rpm by the {} increments per revolution in its parameters",
+              number_text(shown), name, number_text(speed), plain_number(units_->turn().value_or(0), 12)),
       hint + "--turn gives the 6064h increments per revolution, and these are then not compared with " +
           name);
 }
@@ -185,8 +186,8 @@ Result<double> Motion::find_speed_cap() {
     if (asked && most && *asked > *most) {
       const auto numbers = told_apart(*asked, *most);
       return fail(error(Errc::refused,
-                        formatted("the limit of {} {} is above what the drive allows, {} {}", numbers.first,
-                                  unit, numbers.second, unit),
+                        message("the limit of {} {} is above what the drive allows, {} {}", numbers.first,
+                                unit, numbers.second, unit),
                         "607Fh and 6080h set it, or --limit below it"));
     }
     return asked;
@@ -217,17 +218,17 @@ Result<void> Motion::check_speed(double speed) const {
   const auto numbers = told_apart(std::abs(speed), beyond ? **most : *speed_cap_);
   if (beyond)
     return fail(error(Errc::refused,
-                      formatted("the speed of {} {} is above what the drive allows, {} {}", numbers.first,
-                                unit, numbers.second, unit),
+                      message("the speed of {} {} is above what the drive allows, {} {}", numbers.first, unit,
+                              numbers.second, unit),
                       "607Fh and 6080h set it"));
-  auto hint = formatted("`--limit {}{}` raises it, if the machine may move that fast", numbers.first, unit);
+  auto hint = message("`--limit {}{}` raises it, if the machine may move that fast", numbers.first, unit);
   if (supposed_turn_ && options_.speed_limit.empty())
-    hint = formatted("add --turn, the increments per revolution: at {} of them this speed is {} rpm; {}",
-                     plain_number(*supposed_turn_, 12), number_text(std::abs(speed) / *supposed_turn_ * 60),
-                     hint);
+    hint =
+        message("add --turn, the increments per revolution: at {} of them this speed is {} rpm; {}",
+                plain_number(*supposed_turn_, 12), number_text(std::abs(speed) / *supposed_turn_ * 60), hint);
   return fail(error(
       Errc::refused,
-      formatted("the speed of {} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),
+      message("the speed of {} {} is above the limit of {} {}", numbers.first, unit, numbers.second, unit),
       std::move(hint)));
 }
 
@@ -241,8 +242,8 @@ Result<double> Motion::torque_cap() const {
     if (asked && most && *asked > *most * kUnitRounding) {
       const auto numbers = told_apart(*asked, *most);
       return fail(error(Errc::refused,
-                        formatted("--max-torque of {} {} is above what the drive allows, {} {}",
-                                  numbers.first, unit, numbers.second, unit),
+                        message("--max-torque of {} {} is above what the drive allows, {} {}", numbers.first,
+                                unit, numbers.second, unit),
                         "6072h sets it, or --max-torque below it"));
     }
     return asked;
@@ -258,7 +259,7 @@ Result<double> Motion::torque_cap() const {
   }
   if (rated) return std::min(*rated, most.value_or(*rated));
   return fail(Errc::usage, "a safe torque cannot be derived from this drive",
-              formatted("add --max-torque TORQUE in {}", unit.empty() ? "the drive's own unit" : unit));
+              message("add --max-torque TORQUE in {}", unit.empty() ? "the drive's own unit" : unit));
 }
 
 }  // namespace servoctl::motion

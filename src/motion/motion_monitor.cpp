@@ -22,7 +22,7 @@ constexpr Duration kModePeriod = std::chrono::milliseconds(100);
 /// A way summed up from speeds may be off by so much.
 constexpr double kSummed = 0.95;
 
-tl::unexpected<Error> stopped_by(std::uint8_t node, const std::string& what, std::string hint) {
+tl::unexpected<Error> stopped_by(std::uint8_t node, const Message& what, Message hint) {
   return fail(drive_error(Errc::negative, node, what, std::move(hint)));
 }
 
@@ -166,7 +166,7 @@ bool MotionMonitor::follow_zero(const MotionSample& sample) {
 Result<void> MotionMonitor::check_gap(const MotionSample& sample) const {
   if (samples_.empty() || sample.time - samples_.back().time <= kLongestGap) return {};
   const auto gap = std::chrono::duration<double>(sample.time - samples_.back().time).count();
-  return stopped_by(node_, formatted("was not looked at for {} s while moving", number_text(gap)),
+  return stopped_by(node_, message("was not looked at for {} s while moving", number_text(gap)),
                     "was this program suspended, or is the link slow? A motion needs a look every second");
 }
 
@@ -175,8 +175,8 @@ Result<void> MotionMonitor::check_mode(const Result<Bytes>& answer) {
   if (!answer) mode_.reset();  // It does not tell it.
   if (!answer || answer->empty() || static_cast<std::int8_t>(load_le(*answer)) == *mode_) return {};
   return stopped_by(node_,
-                    formatted("left its mode while moving: 6061h shows {} instead of {}",
-                              static_cast<int>(static_cast<std::int8_t>(load_le(*answer))), int{*mode_}),
+                    message("left its mode while moving: 6061h shows {} instead of {}",
+                            static_cast<int>(static_cast<std::int8_t>(load_le(*answer))), int{*mode_}),
                     "another master, or a PDO, may have written 6060h");
 }
 
@@ -189,14 +189,14 @@ Result<void> MotionMonitor::check_speeds() const {
   const auto by_position = speeds_.shown_by_position();
   if (!by_position)
     return stopped_by(node_,
-                      formatted("reports a speed of {} {} (606Ch), and its position (6064h) stands still or "
-                                "goes the other way",
-                                number_text(speeds_.shown()), unit),
+                      message("reports a speed of {} {} (606Ch), and its position (6064h) stands still or "
+                              "goes the other way",
+                              number_text(speeds_.shown()), unit),
                       "check the encoder, and polarity (607Eh)");
   return stopped_by(
       node_,
-      formatted("reports a speed of {} {} (606Ch), but its position (6064h) changes by {} {}",
-                number_text(speeds_.shown()), unit, number_text(*by_position), unit),
+      message("reports a speed of {} {} (606Ch), but its position (6064h) changes by {} {}",
+              number_text(speeds_.shown()), unit, number_text(*by_position), unit),
       "one of them is wrong, or their unit: check the encoder, --turn, gear (6091h) and polarity (607Eh)");
 }
 
@@ -215,9 +215,9 @@ Result<void> MotionMonitor::check_events() {
     if (const auto* told = std::get_if<canopen::Emergency>(&event.what)) {
       const auto& profile = units_->profile();
       const auto faults = drive::faults_of(profile.faults, profile.rules.emergency, told->code, told->vendor);
-      const bool message = !faults.empty() && faults.front()->kind == drive::Fault::Kind::status;
-      if (told->code != 0 && !message)
-        out = stopped_by(node_, formatted("sent emergency 0x{:04X} while moving", told->code),
+      const bool is_status = !faults.empty() && faults.front()->kind == drive::Fault::Kind::status;
+      if (told->code != 0 && !is_status)
+        out = stopped_by(node_, message("sent emergency 0x{:04X} while moving", told->code),
                          "`fault show` explains it");
     }
     if (std::holds_alternative<session::NodeEvent::BootUp>(event.what))
@@ -234,8 +234,8 @@ Result<void> MotionMonitor::check_state(const MotionSample& sample) const {
   const auto state = drive::decode_state(sample.statusword);
   if (state == drive::DriveState::operation_enabled) return {};
   return stopped_by(node_,
-                    formatted("left \"operation enabled\" while moving: {} (statusword 0x{:04X})",
-                              drive::name(state), sample.statusword),
+                    message("left \"operation enabled\" while moving: {} (statusword 0x{:04X})",
+                            drive::name(state), sample.statusword),
                     "see `fault show`; an input, another master or the panel may have disabled it");
 }
 
@@ -245,8 +245,8 @@ Result<void> MotionMonitor::check_limits(const MotionSample& sample) const {
     if (!limit || !value || std::abs(*value) <= *limit) return Result<void>{};
     const auto numbers = told_apart(*value, *limit);
     return Result<void>(stopped_by(node_,
-                                   formatted("{} of {} {} exceeds its limit of {}", what, numbers.first,
-                                             units_->unit(object_of(signal)), numbers.second),
+                                   message("{} of {} {} exceeds its limit of {}", what, numbers.first,
+                                           units_->unit(object_of(signal)), numbers.second),
                                    "raise the limit, if this is intended"));
   };
   for (const auto& done :

@@ -59,8 +59,8 @@ class Moving {
     }
     return fail(
         motion_->error(Errc::negative,
-                       formatted("did not reach {} {} in the expected time; it is at {}",
-                                 number_text(plan_->value), plan_->unit, number_text(last_)),
+                       message("did not reach {} {} in the expected time; it is at {}",
+                               number_text(plan_->value), plan_->unit, number_text(last_)),
                        "is it blocked, is its speed limited, or is the position window (6067h) too narrow?"));
   }
   const MotionJudgement& judgement() const { return judgement_; }
@@ -125,8 +125,8 @@ class Moving {
     if (away <= std::max(window_, way * kMostAstray)) return {};
     return fail(
         motion_->error(Errc::negative,
-                       formatted("goes the wrong way: it is at {} {}, further from {} than at the start",
-                                 number_text(*position), plan_->unit, number_text(plan_->value)),
+                       message("goes the wrong way: it is at {} {}, further from {} than at the start",
+                               number_text(*position), plan_->unit, number_text(plan_->value)),
                        "check encoder direction, polarity (607Eh), motor wiring"));
   }
 
@@ -148,8 +148,8 @@ Result<void> check_precision(const MotionUnits& units, const MotionPlan& plan) {
   const double step = std::abs(plan.value) * kStepOfFloat;
   if (!is_float(units.meaning(objects::kTargetPosition)) || step <= near(plan)) return {};
   return fail(Errc::usage,
-              formatted("{} is too far: a number of 32 bits has steps of {} there",
-                        units.words(plan.value, plan.unit), units.words(step, plan.unit)),
+              message("{} is too far: a number of 32 bits has steps of {} there",
+                      units.words(plan.value, plan.unit), units.words(step, plan.unit)),
               "choose a target nearer to zero; `home` sets a new one");
 }
 
@@ -181,7 +181,7 @@ Result<void> find_target(Motion& motion, const Move& move, MotionPlan& plan) {
   // Kept within limits silently it would go elsewhere.
   if (!said || std::abs(said->value - plan.value) > std::max(step, std::abs(plan.value) * 1e-6))
     return fail(motion.error(
-        Errc::usage, formatted("{} {} is out of the range of 607Ah", number_text(plan.value), plan.unit)));
+        Errc::usage, message("{} {} is out of the range of 607Ah", number_text(plan.value), plan.unit)));
   const double from = move.relative ? here.value : 0;
   // What was told must not be lost in a step; the zero it is counted from is one.
   const auto rounding = drive::judge_rounding({asked->value, said->value - from, step, plan.unit});
@@ -201,8 +201,8 @@ Result<void> check_start(Motion& motion, const MotionPlan& plan) {
   const auto here = motion.units().physical(objects::kPositionActual, *answer).value_or(Physical{});
   if (!plan.from || std::abs(here.value - *plan.from) <= near(plan)) return {};
   return fail(motion.error(Errc::refused,
-                           formatted("has moved since the preflight check: it was at {} {} and is at {}",
-                                     number_text(*plan.from), plan.unit, number_text(here.value)),
+                           message("has moved since the preflight check: it was at {} {} and is at {}",
+                                   number_text(*plan.from), plan.unit, number_text(here.value)),
                            "nothing was moved; run the command again"));
 }
 
@@ -210,8 +210,8 @@ Result<ObjectAddress> speed_object_of(const Motion& motion) {
   const auto& name = motion.rules().position_speed;
   const auto object = motion.units().object(name);
   if (object && motion.units().has(*object)) return *object;
-  return fail(motion.error(Errc::refused, formatted("{} has no object for the speed of a move ({})",
-                                                    motion.units().profile().family, name)));
+  return fail(motion.error(Errc::refused, message("{} has no object for the speed of a move ({})",
+                                                  as_it_is(motion.units().profile().family), name)));
 }
 
 /// The speed that was asked for, else a part of what is allowed; empty where its unit is not known.
@@ -251,8 +251,8 @@ Result<MotionPlan> plan_move(Motion& motion, const Move& move) {
   if (const auto window = motion.limits().travel; window && std::abs(plan.way) > *window)
     return fail(
         motion.error(Errc::refused,
-                     formatted("the way of {} is longer than --window allows, {}",
-                               units.words(plan.way, plan.unit), units.words(*window, plan.unit)),
+                     message("the way of {} is longer than --window allows, {}",
+                             units.words(plan.way, plan.unit), units.words(*window, plan.unit)),
                      "nothing was moved; --window is the longest way of one motion, from where it begins"));
   if (const auto ramps =
           motion.add_ramps(plan.speed, {objects::kProfileAcceleration, objects::kProfileDeceleration}, plan);

@@ -75,10 +75,10 @@ Error lacks_object(const drive::Profile& profile, const MotionNeed& need, const 
     return make_error(
         Errc::refused,
         told_by == ToldBy::drive
-            ? formatted("{} has no {} ({}), and 0x6502 of the drive is 0x{:X}: it has no mode {}",
-                        profile.family, name, object.name, modes, mode_text(profile, *mode))
-            : formatted("{} has no {} ({}), and its 0x6502 is 0x{:X}: this drive has no mode {}",
-                        profile.family, name, object.name, modes, mode_text(profile, *mode)),
+            ? message("{} has no {} ({}), and 0x6502 of the drive is 0x{:X}: it has no mode {}",
+                      as_it_is(profile.family), name, object.name, modes, mode_text(profile, *mode))
+            : message("{} has no {} ({}), and its 0x6502 is 0x{:X}: this drive has no mode {}",
+                      as_it_is(profile.family), name, object.name, modes, mode_text(profile, *mode)),
         possible_motions(profile, modes));
   auto hint = possible_motions(profile, modes);
   if (told_by == ToldBy::drive && modes != 0 && mode)
@@ -87,17 +87,17 @@ Error lacks_object(const drive::Profile& profile, const MotionNeed& need, const 
                      "the standard's objects",
                      modes, mode_text(profile, *mode)),
            "; ");
-  return make_error(
-      Errc::refused,
-      formatted("{} has no {} ({}), which `{}` needs", profile.family, name, object.name, need.command),
-      std::move(hint));
+  return make_error(Errc::refused,
+                    message("{} has no {} ({}), which `{}` needs", as_it_is(profile.family), name,
+                            object.name, as_it_is(need.command)),
+                    std::move(hint));
 }
 
 Result<std::int8_t> mode_by_data(const drive::Profile& profile, const MotionNeed& need, std::uint64_t modes,
                                  ToldBy told_by) {
   const auto mode = profile.rules.motion.*(need.mode);
   if (!mode)
-    return fail(Errc::refused, formatted(fmt::runtime(need.no_mode), profile.family),
+    return fail(Errc::refused, message(fmt::runtime(need.no_mode), profile.family),
                 possible_motions(profile, modes));
   if (const auto object = missing(profile, need))
     return fail(lacks_object(profile, need, *object, modes, told_by));
@@ -112,10 +112,10 @@ Result<void> check_object(session::Session& session, const drive::Profile& profi
   if (answer || answer.error().code != Errc::sdo_abort ||
       answer.error().abort_code != canopen::sdo_abort::kNoObject)
     return {};
-  return fail(drive_error(
-      Errc::refused, node, need.object,
-      formatted("has no {} ({}), which `{}` needs", to_string(need.object), need.object_name, need.command),
-      possible_motions(profile, modes)));
+  return fail(drive_error(Errc::refused, node, need.object,
+                          message("has no {} ({}), which `{}` needs", to_string(need.object),
+                                  need.object_name, as_it_is(need.command)),
+                          possible_motions(profile, modes)));
 }
 
 }  // namespace

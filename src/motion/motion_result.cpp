@@ -81,16 +81,16 @@ constexpr Unverified kNotOff{
     "node {4}: IT IS IN {0} (statusword 0x{1:04X}), NOT DE-ENERGISED: SWITCH OFF THE SUPPLY ({2}); the motion "
     "ended with: {3}"};
 
-std::string unverified_text(const MotionEnd& end, const WatchdogPlan& watchdog, std::string_view cause = {},
-                            std::uint8_t node = 0) {
+Message unverified_text(const MotionEnd& end, const WatchdogPlan& watchdog, const Message& cause = {},
+                        std::uint8_t node = 0) {
   const auto& words = end.statusword == 0 ? kNotSeen : kNotOff;
-  return formatted(fmt::runtime(cause.empty() ? words.alone : words.because), drive::name(end.state),
-                   end.statusword, expectation(watchdog, end.watched), cause, node);
+  return message(fmt::runtime(cause.empty() ? words.alone : words.because), drive::name(end.state),
+                 end.statusword, expectation(watchdog, end.watched), cause, node_name(node));
 }
 
 /// A drive that may still be energised is worse than whatever ended the motion.
 Error unverified(std::uint8_t node, const MotionReport& done) {
-  const std::string hint = "do not approach the machine before its supply is off";
+  const Message hint = "do not approach the machine before its supply is off";
   if (done.outcome) return drive_error(Errc::negative, node, unverified_text(done.end, done.watchdog), hint);
   const auto& cause = done.outcome.error();
   // One that is merely interrupted leaves nothing energised.
@@ -105,9 +105,16 @@ std::string_view result_text(const MotionReport& done) {
   return done.differences.empty() ? "done" : "done, but";
 }
 
+Message end_words(const MotionEnd& end, const WatchdogPlan& watchdog) {
+  if (end.verified)
+    return message("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
+                   end.quick_stop ? Message(" after a quick stop") : Message(), end.statusword);
+  return unverified_text(end, watchdog);
+}
+
 Error ended(std::uint8_t node, const MotionReport& done) {
   auto error = done.outcome.error();
-  error.message += formatted("; the drive is in {}", end_text(done.end, done.watchdog));
+  error.message += message("; the drive is in {}", end_words(done.end, done.watchdog));
   if (!error.node) error.node = node;
   return error;
 }
@@ -115,10 +122,7 @@ Error ended(std::uint8_t node, const MotionReport& done) {
 }  // namespace
 
 std::string end_text(const MotionEnd& end, const WatchdogPlan& watchdog) {
-  if (end.verified)
-    return formatted("{}{}, verified (statusword 0x{:04X})", drive::name(end.state),
-                     end.quick_stop ? " after a quick stop" : "", end.statusword);
-  return unverified_text(end, watchdog);
+  return end_words(end, watchdog).text();
 }
 
 Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
@@ -130,16 +134,18 @@ Value motion_result(show::Desk& desk, std::uint8_t node, const MotionPlan& plan,
     desk.errors.push_back(ended(node, done));
   else if (!done.differences.empty())
     desk.errors.push_back(
-        drive_error(Errc::negative, node, formatted("done, but {}", fmt::join(done.differences, "; ")),
+        drive_error(Errc::negative, node, message("done, but {}", fmt::join(done.differences, "; ")),
                     "check the drive's limits (`param list`, 607Fh, 6080h, 6072h), its gear and its load"));
-  for (const auto& text : done.unchecked) desk.notices.push_back(formatted("node {}: {}", node, text));
+  for (const auto& text : done.unchecked)
+    desk.notices.push_back(message("node {}: {}", node_name(node), text));
   for (const auto& left : done.end.left)
     desk.errors.push_back(
         drive_error(Errc::negative, node, left,
                     left.starts_with("object ")
                         ? "once the drive answers, `write` puts it back, with these bytes behind hex:"
                         : "check the drive before using it"));
-  for (const auto& note : done.end.notes) desk.notices.push_back(formatted("node {}: {}", node, note));
+  for (const auto& note : done.end.notes)
+    desk.notices.push_back(message("node {}: {}", node_name(node), note));
   for (const auto& event : done.events)
     desk.notices.push_back(show::notice_text(event, desk.profile, desk.chinese, &desk.session->network()));
   const double length =

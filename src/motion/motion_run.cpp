@@ -140,12 +140,12 @@ Result<Value> run_motion(show::Desk& desk, const MotionRequest& request, const M
   display = Display(desk, motion);
   if (const auto ready = motion.prepare(); !ready) return fail(ready.error());
   auto notes = turn_notes(motion.units(), known);
-  for (const auto& note : notes) desk.notices.push_back(formatted("node {}: {}", node, note));
+  for (const auto& note : notes) desk.notices.push_back(message("node {}: {}", node_name(node), note));
   const auto plan = run.plan(motion);
   if (!plan) return fail(plan.error());
   const auto items = motion.look(desk.chinese);
   if (!items) return fail(items.error());
-  for (const auto& note : plan->notes) desk.notices.push_back(formatted("node {}: {}", node, note));
+  for (const auto& note : plan->notes) desk.notices.push_back(message("node {}: {}", node_name(node), note));
   notes.insert(notes.end(), plan->notes.begin(), plan->notes.end());
   auto possible = check_preflight(*items, node);
   if (possible) possible = check_mode(*desk.session, *desk.profile, node, plan->mode);

@@ -28,8 +28,8 @@ Result<void> limit_speed(const Motion& motion, double cap, MotionPlan& plan) {
     if (held->value > cap * (1 + drive::kMostLoss)) {
       const auto numbers = told_apart(cap, held->value);
       return fail(Errc::usage,
-                  formatted("--limit: {} {} cannot be set in the drive ({}): its nearest limit is {} {}",
-                            numbers.first, unit, to_string(*object), numbers.second, held->unit),
+                  message("--limit: {} {} cannot be set in the drive ({}): its nearest limit is {} {}",
+                          numbers.first, unit, to_string(*object), numbers.second, held->unit),
                   "raise the limit");
     }
     plan.settings.emplace_back(*object, *data);
@@ -64,10 +64,10 @@ Result<void> check_torque(const Motion& motion, const Physical& torque) {
   const auto numbers = told_apart(std::abs(torque.value), *cap);
   return fail(
       motion.error(Errc::refused,
-                   formatted("the torque of {} {} is above the limit of {} {}", numbers.first, torque.unit,
-                             numbers.second, torque.unit),
-                   formatted("`--max-torque {}{}` raises it, if machine and motor can take it, up to 6072h",
-                             numbers.first, torque.unit)));
+                   message("the torque of {} {} is above the limit of {} {}", numbers.first, torque.unit,
+                           numbers.second, torque.unit),
+                   message("`--max-torque {}{}` raises it, if machine and motor can take it, up to 6072h",
+                           as_it_is(numbers.first), as_it_is(torque.unit))));
 }
 
 }  // namespace

@@ -125,8 +125,8 @@ Error MotionUnits::unproven(ObjectAddress object, std::string_view text) const {
       naming(drive::meaning(drive::target_at(profile_, stated_at(*profile_, object)), node_));
   return make_error(
       Errc::usage,
-      formatted("'{}': the unit of {} is not known: neither the drive's data nor the drive ({}) states it",
-                text, to_string(object), to_string(named_by)),
+      message("'{}': the unit of {} is not known: neither the drive's data nor the drive ({}) states it",
+              as_it_is(text), as_it_is(to_string(object)), to_string(named_by)),
       "write the plain number that the drive takes; its manual gives the unit. A wrong unit can turn the "
       "motor at its maximum speed");
 }
@@ -140,9 +140,10 @@ Error MotionUnits::unusable(ObjectAddress object, std::string_view text, const s
                             Error error) const {
   const auto what = meaning(object);
   if (what.measure == drive::Measure::increments_per_turn && !what.bridge)
-    error.hint += formatted("; --turn gives the 6064h increments per revolution{}",
-                            profile_->rules.learn.speed.empty() ? "" : ", `units learn` measures them");
-  if (motor != text) error.message = formatted("'{}' of the load: {}", text, error.message);
+    error.hint +=
+        message("; --turn gives the 6064h increments per revolution{}",
+                profile_->rules.learn.speed.empty() ? Message() : Message(", `units learn` measures them"));
+  if (motor != text) error.message = message("'{}' of the load: {}", as_it_is(text), error.message);
   return error;
 }
 
@@ -170,9 +171,11 @@ Result<void> MotionUnits::check_unit(const drive::Meaning& what, ObjectAddress o
            formatted("as a unit of the load, {} needs `per_turn` of the axis in a cabinet file", given->unit),
            "; ");
   const bool bare = parse_integer(trim(text)) || parse_real(trim(text));
-  if (bare) return fail(Errc::usage, formatted("'{}' has no unit", text), std::move(hint));
-  if (!given) return fail(Errc::usage, formatted("'{}' is not a number with a unit", text), std::move(hint));
-  return fail(Errc::usage, formatted("'{}': {} cannot be converted to {}", text, given->unit, what.unit),
+  if (bare) return fail(Errc::usage, message("'{}' has no unit", as_it_is(text)), std::move(hint));
+  if (!given)
+    return fail(Errc::usage, message("'{}' is not a number with a unit", as_it_is(text)), std::move(hint));
+  return fail(Errc::usage,
+              message("'{}': {} cannot be converted to {}", as_it_is(text), given->unit, what.unit),
               std::move(hint));
 }
 

@@ -44,8 +44,8 @@ Result<bool> Motion::supervise(const std::function<Result<bool>(const MotionSamp
       return fail(error(
           Errc::negative,
           foreign->by_pdo()
-              ? formatted("another master sent a PDO with object {} while moving", to_string(foreign->object))
-              : formatted("another master wrote object {} while moving", to_string(foreign->object)),
+              ? message("another master sent a PDO with object {} while moving", to_string(foreign->object))
+              : message("another master wrote object {} while moving", to_string(foreign->object)),
           std::string(MotionGuard::kTwoMasters)));
     if (options_.unheard && options_.unheard())
       return fail(error(Errc::interrupted, "the output is no longer read: the motion ends"));

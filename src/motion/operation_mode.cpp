@@ -46,7 +46,7 @@ Result<void> check_mode(session::Session& session, const drive::Profile& profile
   const auto meaning = drive::meaning(drive::target_at(&profile, objects::kModeOfOperation), node);
   if (is_unknown_maker_mode(profile, mode)) return {};
   if (meaning.labels != nullptr && drive::label_of(meaning, od::Value(std::int64_t{mode})) == nullptr)
-    return fail(drive_error(Errc::refused, node, formatted("{} has no mode {}", profile.family, mode),
+    return fail(drive_error(Errc::refused, node, message("{} has no mode {}", as_it_is(profile.family), mode),
                             "modes: " + known_modes(meaning)));
   if (mode < 1 || mode > 32) return {};
   const auto modes = supported_modes(session, profile, node);
@@ -55,7 +55,7 @@ Result<void> check_mode(session::Session& session, const drive::Profile& profile
   auto hint = possible_motions(profile, *modes);
   return fail(drive_error(
       Errc::refused, node,
-      formatted("the drive does not support mode {} (0x6502 is 0x{:X})", mode_text(profile, mode), *modes),
+      message("the drive does not support mode {} (0x6502 is 0x{:X})", mode_text(profile, mode), *modes),
       hint.empty() ? "0x6502 lists its modes: bit 0 is mode 1" : std::move(hint)));
 }
 
@@ -78,8 +78,8 @@ Result<void> set_mode(session::Session& session, const drive::Profile& profile, 
     if (*now_in == mode) return {};
     if (session.now() >= end)
       return fail(drive_error(Errc::negative, node,
-                              formatted("was set to mode {} but stays in mode {} (6061h)",
-                                        mode_text(profile, mode), mode_text(profile, *now_in)),
+                              message("was set to mode {} but stays in mode {} (6061h)",
+                                      mode_text(profile, mode), mode_text(profile, *now_in)),
                               "is it in the control mode for CANopen motion? `info` names what it needs"));
     if (const auto paused = pause(session, kModePause); !paused) return paused;
   }

@@ -82,7 +82,7 @@ Result<void> stop_axes(session::Session& session, std::uint8_t node, std::vector
     const bool stands = !disable && axis.statusword &&
                         drive::decode_state(*axis.statusword) == drive::DriveState::quick_stop_active;
     if (out && axis.may_be_energised() && !stands)
-      out = fail(drive_error(Errc::negative, node, formatted("{}: it may be energised", axis.text()),
+      out = fail(drive_error(Errc::negative, node, message("{}: it may be energised", axis.text()),
                              "switch off the supply"));
   }
   return out;

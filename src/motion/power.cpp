@@ -20,10 +20,10 @@ constexpr int kMostTransitions = 12;
 
 Error enabled_by_others(std::uint8_t node, DriveState state) {
   if (state == DriveState::fault_reaction_active || state == DriveState::quick_stop_active)
-    return drive_error(Errc::refused, node, formatted("it is in {}", drive::name(state)),
+    return drive_error(Errc::refused, node, message("it is in {}", drive::name(state)),
                        "nothing was moved; `status` and `fault show` say why, `disable` de-energises it");
   return drive_error(Errc::refused, node,
-                     formatted("it was enabled by somebody else: it is in {}", drive::name(state)),
+                     message("it was enabled by somebody else: it is in {}", drive::name(state)),
                      "nothing was moved; `disable` it if no other master controls it");
 }
 
@@ -99,17 +99,17 @@ Result<bool> Power::wait_for(DriveState wanted) {
 
 Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
   const auto now_in = drive::decode_state(statusword_);
-  auto what = formatted("does not reach {}; it is in {} (statusword 0x{:04X})", drive::name(next.reached),
-                        drive::name(now_in), statusword_);
-  std::string hint;
+  const auto what = message("does not reach {}; it is in {} (statusword 0x{:04X})", drive::name(next.reached),
+                            drive::name(now_in), statusword_);
+  Message hint;
   const bool fault = now_in == DriveState::fault || now_in == DriveState::fault_reaction_active;
   if (!fault && source_)
-    return drive_error(Errc::negative, node_, formatted("{}: {}", what, source_->cause()),
+    return drive_error(Errc::negative, node_, message("{}: {}", what, source_->cause()),
                        source_->remedy(*profile_, node_));
   if (fault)
     hint = "`fault show` shows the fault";
   else if (tells(kRemote) && (statusword_ & kRemote) == 0)
-    hint = formatted("bit 9 (remote) is 0: {}", kRemoteCauses);
+    hint = message("bit 9 (remote) is 0: {}", kRemoteCauses);
   else if (tells(kVoltageEnabled) && (statusword_ & kVoltageEnabled) == 0)
     hint = "bit 4 (voltage enabled) is 0: is the main supply on?";
   else if (from == DriveState::switch_on_disabled)
@@ -118,7 +118,7 @@ Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
     hint = "the manual's conditions for enabling are not met: inputs, main supply, brake, mode";
   const auto start = start_command();
   if (!start.empty() && !fault)
-    hint = formatted("some drives obey only in the state operational: `{}`; {}", start, hint);
+    hint = message("some drives obey only in the state operational: `{}`; {}", as_it_is(start), hint);
   return drive_error(Errc::negative, node_, what, hint);
 }
 
@@ -144,8 +144,8 @@ Result<std::vector<drive::PowerStep>> Power::path_to(DriveState from, DriveState
   if (auto path = drive::power_path(from, goal, *resuming)) return std::move(*path);
   const bool fault = from == DriveState::fault || from == DriveState::fault_reaction_active;
   return fail(drive_error(Errc::refused, node_,
-                          formatted("is in {}: no command leads to {} from there (statusword 0x{:04X})",
-                                    drive::name(from), drive::name(goal), statusword_),
+                          message("is in {}: no command leads to {} from there (statusword 0x{:04X})",
+                                  drive::name(from), drive::name(goal), statusword_),
                           fault ? "`fault show` shows the fault; once its cause is gone, `fault reset`"
                                 : "power the drive off and on again"));
 }
@@ -160,7 +160,7 @@ Result<void> Power::reach(DriveState goal) {
     if (const auto done = step(*from, path->front()); !done) return done;
   }
   return fail(drive_error(Errc::negative, node_,
-                          formatted("changes state by itself and never stays in {}", drive::name(goal)),
+                          message("changes state by itself and never stays in {}", drive::name(goal)),
                           "does another master control it?"));
 }
 

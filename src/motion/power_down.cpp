@@ -273,9 +273,10 @@ namespace {
 /// Process data end with the power of a drive, unless the user has it in OP. When everything ends they end.
 void end_exchange(session::Session& session, const PowerDownPlan& plan, PowerDownResult& result) {
   if (plan.aim != PowerAim::stop_and_disable && session.network().stays_operational(plan.node)) {
-    if (const auto back = renew_op(session, plan.node); !back) result.notes.push_back(back.error().message);
+    if (const auto back = renew_op(session, plan.node); !back)
+      result.notes.push_back(back.error().message.text());
   } else if (const auto ended = session.network().end_exchange(plan.node); !ended) {
-    result.notes.push_back("it could not be set back to PRE-OP: " + ended.error().message);
+    result.notes.push_back("it could not be set back to PRE-OP: " + ended.error().message.text());
   }
 }
 

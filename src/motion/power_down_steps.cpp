@@ -62,7 +62,7 @@ void PowerDown::on_slowing_speed(const Result<Bytes>& answer, TimePoint now) {
 
 void PowerDown::on_quick_stop(const Result<Bytes>& answer, TimePoint now) {
   result_.written = answer.has_value();
-  if (!answer) untaken_ = answer.error().message;
+  if (!answer) untaken_ = answer.error().message.text();
   enter(State::stopping, now);
 }
 
@@ -131,7 +131,7 @@ void PowerDown::on_switching_off(const Result<Bytes>& answer, TimePoint now) {
 void PowerDown::on_cut(const Result<Bytes>& answer, TimePoint now) {
   ++tries_;
   result_.written = answer.has_value();
-  if (!answer) untaken_ = answer.error().message;
+  if (!answer) untaken_ = answer.error().message.text();
   enter(State::cutting, now);
 }
 
@@ -194,18 +194,18 @@ void PowerDown::end_stop() {
   if (unread_) return finish(fail(*unread_));
   const auto state = seen_;
   if (!drive::is_energised(state) && !result_.written) {
-    return finish(fail(
-        drive_error(Errc::negative, plan_.node,
-                    formatted("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
-                              drive::name(state), kQuickStopWord, untaken_),
-                    "`disable` it, or switch off the supply")));
+    return finish(
+        fail(drive_error(Errc::negative, plan_.node,
+                         message("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
+                                 drive::name(state), kQuickStopWord, untaken_),
+                         "`disable` it, or switch off the supply")));
   }
   if (!drive::is_energised(state) || result_.stopped) return finish({});
   const bool followed = state == DriveState::quick_stop_active;
   finish(fail(drive_error(
       Errc::negative, plan_.node,
       followed ? std::string("is in quick stop active and does not report standstill")
-               : formatted("does not follow the quick stop; it is in {} ({})", drive::name(state), word()),
+               : message("does not follow the quick stop; it is in {} ({})", drive::name(state), word()),
       followed ? "check the motor; `disable` de-energises it"
                : "does another master control it? `disable`, or switch off the supply")));
 }
@@ -215,19 +215,19 @@ void PowerDown::end_cut() {
   const auto state = seen_;
   if (is_without_power(state) && result_.written) return finish({});
   if (is_without_power(state))
-    return finish(fail(
-        drive_error(Errc::negative, plan_.node,
-                    formatted("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
-                              drive::name(state), kDisableVoltageWord, untaken_),
-                    "switch off the supply before anybody approaches the machine")));
+    return finish(
+        fail(drive_error(Errc::negative, plan_.node,
+                         message("is in {}, and 6040h did not accept {:04X}h ({}): it may restart by itself",
+                                 drive::name(state), kDisableVoltageWord, untaken_),
+                         "switch off the supply before anybody approaches the machine")));
   if (brakes(state))
     return finish(
         fail(drive_error(Errc::negative, plan_.node, "is still braking after a fault, and may be energised",
                          "`status` shows its state")));
-  finish(fail(drive_error(Errc::negative, plan_.node,
-                          formatted("does not obey 0000h, written {} times; it is in {} ({})", tries_,
-                                    drive::name(state), word()),
-                          "does another master control it? Switch off the supply")));
+  finish(fail(drive_error(
+      Errc::negative, plan_.node,
+      message("does not obey 0000h, written {} times; it is in {} ({})", tries_, drive::name(state), word()),
+      "does another master control it? Switch off the supply")));
 }
 
 void PowerDown::finish(Result<void> outcome) {

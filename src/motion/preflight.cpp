@@ -182,7 +182,7 @@ class Preflight {
   void tell_owed() {
     if (request_.owed.unread)
       add(Weight::caution, "restart",
-          formatted("what waits for a restart is not known: {}", request_.owed.unread->message));
+          formatted("what waits for a restart is not known: {}", request_.owed.unread->message.text()));
     if (request_.owed.values.empty()) return;
     add(Weight::caution, "restart",
         formatted("{}: {}", show::owed_lead(request_.owed.values),
@@ -270,7 +270,7 @@ Result<void> look_in_op(session::Session& session, const MotionUnits& units, std
   if (unseen.empty()) return {};
   if (!ask)
     return fail(drive_error(Errc::refused, node,
-                            formatted("in OP, {}: {}", unseen.front().what, unseen.front().text),
+                            message("in OP, {}: {}", unseen.front().what, unseen.front().text),
                             "nothing was moved; outside OP the drive did not report this"));
   if (const auto answer = ask(unseen); !answer) return answer;
   // A person may have taken time to answer.
@@ -286,7 +286,7 @@ PreflightItem watchdog_item(const WatchdogPlan& watchdog) {
 Result<void> check_preflight(const std::vector<PreflightItem>& items, std::uint8_t node) {
   for (const auto& item : items)
     if (item.weight == Weight::stop)
-      return fail(drive_error(Errc::refused, node, formatted("{}: {}", item.what, item.text),
+      return fail(drive_error(Errc::refused, node, message("{}: {}", item.what, item.text),
                               item.hint.empty() ? std::string("nothing was moved") : item.hint));
   return {};
 }

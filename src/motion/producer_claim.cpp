@@ -15,13 +15,12 @@ constexpr unsigned kSlotBits = 3;
 constexpr unsigned kMostRounds = 10;
 
 Error contested(std::uint8_t id) {
-  return fail(
-             Errc::refused,
-             formatted("another master sends heartbeats as node {} (0x{:03X}): the drive would not notice if "
-                       "servoctl died",
-                       id, 0x700U + id),
-             formatted("stop the other master, or use another node-ID: --master-node {}",
-                       id > 1 ? id - 1 : 127))
+  return fail(Errc::refused,
+              message("another master sends heartbeats as node {} (0x{:03X}): the drive would not notice if "
+                      "servoctl died",
+                      id, 0x700U + id),
+              message("stop the other master, or use another node-ID: --master-node {}",
+                      id > 1 ? id - 1 : 127))
       .value();
 }
 

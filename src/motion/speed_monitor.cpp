@@ -35,15 +35,15 @@ Result<void> SpeedMonitor::check_still() {
   if (!shown) {
     if (shown.error().code != Errc::sdo_abort) return fail(shown.error());
     return fail(motion_->error(Errc::refused,
-                               formatted("does not show the motor speed: {} ({}) cannot be read",
-                                         learn_->monitor_name, to_string(learn_->monitor)),
+                               message("does not show the motor speed: {} ({}) cannot be read",
+                                       learn_->monitor_name, to_string(learn_->monitor)),
                                std::string(kOtherWay)));
   }
   const auto rpm = motion_->units().physical(learn_->monitor, *shown);
   if (!rpm || std::abs(rpm->value) <= kRestRpm) return {};
   return fail(motion_->error(
       Errc::refused,
-      formatted("is not energised, but {} shows {} rpm", learn_->monitor_name, number_text(rpm->value)),
+      message("is not energised, but {} shows {} rpm", learn_->monitor_name, number_text(rpm->value)),
       "wait until the motor stands still; a wrong monitor cannot be used to measure"));
 }
 

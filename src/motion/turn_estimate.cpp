@@ -20,7 +20,7 @@ constexpr double kMostQuarrel = 0.02;   ///< Between 606Ch and the way.
 constexpr double kWrap = 4294967296.0;  ///< 6064h has 32 bits.
 constexpr std::array kRound{1.0, 2.0, 2.5, 3.6, 4.0, 5.0, 8.0};
 
-tl::unexpected<Error> no_number(std::string message, std::string hint) {
+tl::unexpected<Error> no_number(Message message, Message hint) {
   return fail(Errc::negative, std::move(message), std::move(hint));
 }
 
@@ -105,7 +105,7 @@ std::vector<double> parts_of(std::span<const TurnLook> looks) {
 
 Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double step) {
   if (looks.size() < kLeastLooks)
-    return no_number(formatted("answered only {} times while turning: too few samples", looks.size()),
+    return no_number(message("answered only {} times while turning: too few samples", looks.size()),
                      "measure for longer (--for 20s), or keep other traffic off the bus");
   const auto whole = stretch_of(looks);
   const bool one_way = std::all_of(looks.begin(), looks.end(),
@@ -124,7 +124,7 @@ Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double ste
   if (!(spread <= kMostSpread)) {
     const auto [least, most] = std::minmax_element(parts.begin(), parts.end());
     return no_number(
-        formatted(
+        message(
             "shows a speed that does not match its position: {} to {} increments per revolution in parts of "
             "the measurement",
             std::llround(*least), std::llround(*most)),
@@ -132,14 +132,14 @@ Result<TurnMeasurement> measure_turn(std::span<const TurnLook> looks, double ste
   }
   out.by_speed = by_speed(looks, out.rpm);
   if (std::abs(out.by_speed / out.increments - 1) > kMostQuarrel)
-    return no_number(formatted("reports two speeds: a revolution has {} increments by 606Ch, {} by 6064h",
-                               std::llround(out.by_speed), std::llround(out.increments)),
+    return no_number(message("reports two speeds: a revolution has {} increments by 606Ch, {} by 6064h",
+                             std::llround(out.by_speed), std::llround(out.increments)),
                      std::string(kOtherWay));
   out.uncertainty = step / out.rpm + 2 * spread / std::sqrt(static_cast<double>(kParts));
   if (out.uncertainty > kTurnTolerance)
-    return no_number(formatted("has about {} increments per revolution ± {} %; only 1 % is allowed",
-                               std::llround(out.increments), percent(out.uncertainty)),
-                     formatted("measure for longer (--for 20s), or faster (--speed 30rpm); {}", kOtherWay));
+    return no_number(message("has about {} increments per revolution ± {} %; only 1 % is allowed",
+                             std::llround(out.increments), percent(out.uncertainty)),
+                     message("measure for longer (--for 20s), or faster (--speed 30rpm); {}", kOtherWay));
   return out;
 }
 
@@ -149,33 +149,33 @@ Result<TurnCounts> counts_behind(double measured, double uncertainty, const Turn
     if (is_near(measured, *expected.told))
       return TurnCounts{*expected.told,
                         formatted("given by --nameplate, {}", distance(measured, *expected.told))};
-    return no_number(formatted("has {} measured counts per revolution (± {} %), not the {} of --nameplate",
-                               std::llround(measured), percent(uncertainty), told),
+    return no_number(message("has {} measured counts per revolution (± {} %), not the {} of --nameplate",
+                             std::llround(measured), percent(uncertainty), told),
                      "leave --nameplate out, or check the motor's nameplate");
   }
   const int bits = nearest_power_of_two(measured);
   if (const double power = std::ldexp(1, bits); is_near(measured, power))
     return TurnCounts{power, formatted("2^{}: {}", bits, distance(measured, power))};
   const double decimal = nearest_decimal(measured);
-  const auto said = formatted("has {} measured counts per revolution (± {} %)", std::llround(measured),
-                              percent(uncertainty));
+  const auto said =
+      message("has {} measured counts per revolution (± {} %)", std::llround(measured), percent(uncertainty));
   if (!is_near(measured, decimal))
     return no_number(
         said + ": neither a power of two nor a round decimal number is within 1 % of it",
-        formatted(
+        message(
             "check the motor's nameplate; `units learn -n {} --nameplate COUNTS` measures again, compares "
             "COUNTS with the result and keeps it",
-            expected.node));
+            node_name(expected.node)));
   if (expected.disputed)
     return no_number(
-        formatted(
+        message(
             "{}: {} is near, but the manual gives two scales for the speed monitor, and with the other it "
             "would be {}",
             said, std::llround(decimal), plain_number(decimal / 10, 12)),
-        formatted(
+        message(
             "check the motor's nameplate; if it agrees, `units learn -n {} --nameplate {}` measures again "
             "and keeps it",
-            expected.node, std::llround(decimal)));
+            node_name(expected.node), as_it_is(std::llround(decimal))));
   return TurnCounts{
       decimal, formatted("a round decimal number, {}; no power of two is near", distance(measured, decimal))};
 }

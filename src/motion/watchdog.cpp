@@ -189,10 +189,10 @@ Result<WatchdogPlan> plan_watchdog(session::Session& session, const drive::Profi
                                    std::uint8_t node, std::optional<std::uint8_t> producer,
                                    Listening listening) {
   if (producer && *producer == node)
-    return fail(Errc::usage, formatted("{} is the drive's own node-ID", node),
+    return fail(Errc::usage, message("{} is the drive's own node-ID", node),
                 "give servoctl a different one, such as 127");
   if (producer && session.watch().state(*producer))
-    return fail(Errc::refused, formatted("--master-node {}: this node-ID is already in use", *producer),
+    return fail(Errc::refused, message("--master-node {}: this node-ID is already in use", *producer),
                 "leave it out, and servoctl takes a free node-ID");
   using Sign = session::LifeSign::Kind;
   const auto& network = session.network();

@@ -14,21 +14,21 @@ Result<void> check_one(const MotionUnits& units, const WrittenQuantity& written)
       written.object == objects::kTorqueActual && units.profile().rules.motion.torque.has_value();
   if (written.is_limit && !also_a_ceiling && !units.has(written.object))
     return fail(Errc::usage,
-                formatted("{} {}: this family does not report it ({})", written.word, written.text,
-                          to_string(written.object)),
+                message("{} {}: this family does not report it ({})", written.word, written.text,
+                        to_string(written.object)),
                 "leave this limit out");
   if (!units.has(written.object)) return {};
   const auto value = units.check(written.object, written.text, written.kind, written.is_limit);
   if (!value) {
     auto error = value.error();
-    error.message = formatted("{}: {}", written.word, error.message);
+    error.message = message("{}: {}", written.word, error.message);
     return fail(std::move(error));
   }
   if (written.least == Least::above_zero && *value <= 0)
     return fail(Errc::usage,
-                formatted("{}: '{}' must be above 0, without a sign", written.word, written.text));
+                message("{}: '{}' must be above 0, without a sign", written.word, as_it_is(written.text)));
   if (written.least == Least::not_zero && *value == 0)
-    return fail(Errc::usage, formatted("{}: '{}' moves nothing", written.word, written.text));
+    return fail(Errc::usage, message("{}: '{}' moves nothing", written.word, as_it_is(written.text)));
   return {};
 }
 

@@ -49,7 +49,7 @@ struct Dcf {
   std::vector<Error> unusable;
   /// ParameterValues that mean nothing: of a record or array as a whole, or in a list ([2100Value]) beside
   /// the same sub-index with one of its own. With the line.
-  std::vector<std::string> passed_over;
+  std::vector<Message> passed_over;
 };
 
 /// Reads a DCF of any tool. Unlike read_eds() it leaves out no value without a word: see Dcf::unusable.

@@ -37,7 +37,7 @@ class DcfReader {
   Result<Dcf> read() {
     for (const auto& section : ini_.sections) find_places(section);
     if (places_.empty() && out_.unusable.empty())
-      return fail(Errc::file, formatted("{}: it contains no ParameterValue", file_),
+      return fail(Errc::file, message("{}: it contains no ParameterValue", as_it_is(file_)),
                   "it is a data sheet (EDS), or a DCF in which nothing is configured");
     out_.node_id = eds_->node_id;
     out_.vendor_number = eds_->device.vendor_number;
@@ -60,7 +60,8 @@ class DcfReader {
       if (sections_.emplace(section.line, places_.size()).second)
         places_.push_back({&section, &key});
       else
-        refuse(key.line, formatted("[{}] has a second ParameterValue", section.name), "remove one of them");
+        refuse(key.line, message("[{}] has a second ParameterValue", as_it_is(section.name)),
+               "remove one of them");
     }
   }
 
@@ -69,12 +70,14 @@ class DcfReader {
       if (equals_nocase(key.key, "NrOfEntries") || key.value.empty()) continue;
       const auto sub = parse_digits(key.key, 10);
       if (!sub || *sub > 0xFF)
-        refuse(key.line, formatted("[{}] has no entry '{}'", section.name, clip(key.key, 40)),
+        refuse(key.line,
+               message("[{}] has no entry '{}'", as_it_is(section.name), as_it_is(clip(key.key, 40))),
                "its keys are the decimal numbers of sub-indexes");
       else if (listed_.emplace(list_key(index, static_cast<std::uint8_t>(*sub)), places_.size()).second)
         places_.push_back({&section, &key});
       else
-        refuse(key.line, formatted("[{}] has a second entry {}", section.name, *sub), "remove one of them");
+        refuse(key.line, message("[{}] has a second entry {}", as_it_is(section.name), *sub),
+               "remove one of them");
     }
   }
 
@@ -98,9 +101,9 @@ class DcfReader {
     if (listed == listed_.end() || &places_[listed->second] == &place) return;
     auto& other = places_[listed->second];
     other.taken = true;
-    out_.passed_over.push_back(
-        formatted("{}:{}: [{}] also has a value of {}, which is ignored in favour of line {}", file_,
-                  other.key->line, other.section->name, to_string(entry.address), place.key->line));
+    out_.passed_over.push_back(message(
+        "{}:{}: [{}] also has a value of {}, which is ignored in favour of line {}", as_it_is(file_),
+        other.key->line, as_it_is(other.section->name), as_it_is(to_string(entry.address)), place.key->line));
   }
 
   Place* place_of(const Entry& entry) {
@@ -123,8 +126,8 @@ class DcfReader {
 
   void pass(const Place& place) {
     if (is_of_whole(place)) {
-      out_.passed_over.push_back(formatted("{}:{}: [{}] has sub-indexes and holds no value of its own", file_,
-                                           place.key->line, place.section->name));
+      out_.passed_over.push_back(message("{}:{}: [{}] has sub-indexes and holds no value of its own",
+                                         as_it_is(file_), place.key->line, as_it_is(place.section->name)));
       return;
     }
     const auto first = place.section->line;
@@ -136,12 +139,12 @@ class DcfReader {
     });
     if (why != all.end()) return refuse(why->line, why->message, why->remedy);
     refuse(place.key->line,
-           formatted("[{}] describes no object that could hold the value", place.section->name),
+           message("[{}] describes no object that could hold the value", as_it_is(place.section->name)),
            "give the object its section, with DataType and AccessType");
   }
 
-  void refuse(std::uint32_t line, std::string_view what, std::string hint) {
-    auto error = fail(Errc::file, formatted("{}:{}: {}", file_, line, what), std::move(hint)).value();
+  void refuse(std::uint32_t line, const Message& what, Message hint) {
+    auto error = fail(Errc::file, message("{}:{}: {}", as_it_is(file_), line, what), std::move(hint)).value();
     error.line = line;
     out_.unusable.push_back(std::move(error));
   }

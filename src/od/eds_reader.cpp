@@ -244,8 +244,8 @@ Findings findings_of(const DecodedText& decoded) {
   return findings;
 }
 
-tl::unexpected<Error> refuse(std::string_view file, std::string_view why, std::string hint) {
-  return fail(Errc::file, formatted("{}: {}", file, why), std::move(hint));
+tl::unexpected<Error> refuse(std::string_view file, const Message& why, Message hint) {
+  return fail(Errc::file, message("{}: {}", as_it_is(file), why), std::move(hint));
 }
 
 std::size_t count_of(const std::vector<Diagnostic>& diagnostics, Severity severity) {
@@ -262,7 +262,7 @@ std::size_t EdsFile::warning_count() const { return count_of(diagnostics, Severi
 Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
   constexpr std::string_view kHint = "is it an EDS or DCF file (CiA 306)?";
   if (text.size() > kMostEdsBytes)
-    return refuse(file, formatted("{} MiB is too large for an EDS", text.size() >> 20U), std::string(kHint));
+    return refuse(file, message("{} MiB is too large for an EDS", text.size() >> 20U), std::string(kHint));
   if (is_binary(text)) return refuse(file, "not a text file", std::string(kHint));
   const auto decoded = to_utf8(text);
   auto out = EdsReader(decoded.text(text), findings_of(decoded)).read();

@@ -121,7 +121,7 @@ Result<Value> value_of(const IniKey& key, DataType type, std::string_view text, 
 
 void tell_no_value(const IniKey& key, DataType type, std::string_view text, const Error& error, ValueUse use,
                    Findings& findings) {
-  const auto why = clip(error.message, 200);
+  const auto why = clip(error.message.text(), 200);
   const bool is_number = parse_integer(text).has_value();
   if (use == ValueUse::limit && (is_number || !is_integer(type)))
     findings.warn(key, "limit-outside-type", formatted("{}: {}; no limit is taken", key.key, why),

@@ -35,7 +35,7 @@ double decode_number(Encoding encoding, const Value& raw) {
 Result<Value> encode_number(Encoding encoding, DataType type, double number) {
   const auto real = static_cast<float>(number);
   if (!std::isfinite(number) || !std::isfinite(real))
-    return fail(Errc::usage, formatted("{:g} is too large for a number of 32 bits", number));
+    return fail(Errc::usage, message("{:g} is too large for a number of 32 bits", number));
   const auto bits = std::bit_cast<std::uint32_t>(real);
   const auto raw = encoding == Encoding::f32hi ? bits >> 16U : bits;
   if (!is_signed(type)) return Value(std::uint64_t{raw});

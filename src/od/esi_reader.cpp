@@ -20,15 +20,13 @@
 namespace servoctl::od {
 namespace {
 
-constexpr std::string_view kEsiHint =
-    "an ESI file of an EtherCAT device (ETG.2000) begins with <EtherCATInfo>";
+constexpr const char* kEsiHint = "an ESI file of an EtherCAT device (ETG.2000) begins with <EtherCATInfo>";
 
 constexpr std::size_t kMostDevices = 4096;
 constexpr std::size_t kMostListed = 20;  ///< In an error.
 
-tl::unexpected<Error> refuse_esi(std::string_view file, std::string_view why,
-                                 std::string hint = std::string(kEsiHint)) {
-  return fail(Errc::file, formatted("{}: {}", file, why), std::move(hint));
+tl::unexpected<Error> refuse_esi(std::string_view file, const Message& why, Message hint = kEsiHint) {
+  return fail(Errc::file, message("{}: {}", as_it_is(file), why), std::move(hint));
 }
 
 /// The encoding that the XML declaration names; empty where it names none that is known here.
@@ -117,7 +115,7 @@ EsiDevice device_of(const OpenedEsi& opened, XmlElement element, EsiFindings& fi
 Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
   OpenedEsi out;
   if (bytes.size() > kMostEsiBytes)
-    return refuse_esi(file, formatted("{} MiB is too large for an ESI", bytes.size() >> 20U));
+    return refuse_esi(file, message("{} MiB is too large for an ESI", bytes.size() >> 20U));
   if (is_binary(bytes)) return refuse_esi(file, "not a text file");
   const auto decoded = decode_xml(bytes, out.findings);
   const auto text = decoded.text(bytes);
@@ -127,7 +125,7 @@ Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
   out.document = std::make_unique<XmlDocument>(std::move(*document));
   const auto root = out.document->root();
   if (root.name() != "EtherCATInfo")
-    return refuse_esi(file, formatted("<{}> is not an ESI", shown(root.name())),
+    return refuse_esi(file, message("<{}> is not an ESI", shown(root.name())),
                       std::string(what_else(root.name())));
   if (out.document->declares_type())
     out.findings.add(Severity::warning, 1, 1, "document-type",
@@ -139,7 +137,7 @@ Result<OpenedEsi> open_esi(std::string_view bytes, std::string_view file) {
       out.groups.emplace(std::string(group.child("Type").text()), std::move(words.english));
   out.devices = descriptions.child("Devices").children("Device", kMostDevices + 1);
   if (out.devices.size() > kMostDevices)
-    return refuse_esi(file, formatted("more than {} devices are in this file", kMostDevices),
+    return refuse_esi(file, message("more than {} devices are in this file", kMostDevices),
                       "use a file of fewer");
   if (out.devices.empty())
     return refuse_esi(file, "there is no Device in this file",
@@ -174,10 +172,11 @@ Result<std::size_t> choose(const std::vector<EsiDevice>& devices, std::string_vi
                            std::string_view word) {
   if (word.empty() && devices.size() == 1) return std::size_t{0};
   const auto hint = [&](std::string_view start) {
-    return formatted("{} {}#NUMBER, #NAME or #PRODUCT_CODE:REVISION: {}", start, file, listed(devices));
+    return message("{} {}#NUMBER, #NAME or #PRODUCT_CODE:REVISION: {}", start, as_it_is(file),
+                   listed(devices));
   };
   if (word.empty())
-    return fail(Errc::usage, formatted("{} describes {} devices: which one?", file, devices.size()),
+    return fail(Errc::usage, message("{} describes {} devices: which one?", as_it_is(file), devices.size()),
                 hint("write"));
   if (const auto number = parse_digits(word, 10); number && *number >= 1 && *number <= devices.size())
     return static_cast<std::size_t>(*number - 1);
@@ -186,8 +185,9 @@ Result<std::size_t> choose(const std::vector<EsiDevice>& devices, std::string_vi
     if (is_meant(devices[i], word)) meant.push_back(i);
   if (meant.size() == 1) return meant.front();
   return fail(Errc::usage,
-              meant.empty() ? formatted("{} has no device '{}'", file, shown(word))
-                            : formatted("{} has {} devices '{}'", file, meant.size(), shown(word)),
+              meant.empty()
+                  ? message("{} has no device '{}'", as_it_is(file), as_it_is(shown(word)))
+                  : message("{} has {} devices '{}'", as_it_is(file), meant.size(), as_it_is(shown(word))),
               hint("write"));
 }
 
@@ -250,7 +250,7 @@ Result<EsiFile> read_device(const OpenedEsi& opened, std::size_t number, std::st
   const auto why = std::find_if(found.begin(), found.end(),
                                 [](const Diagnostic& d) { return d.severity == Severity::error; });
   return refuse_esi(
-      file, formatted("'{}' has neither a usable object nor a PDO entry", shown(out.device.name)),
+      file, message("'{}' has neither a usable object nor a PDO entry", as_it_is(shown(out.device.name))),
       why == found.end() ? std::string("it cannot be commissioned by objects: is it a coupler or a junction?")
                          : to_string(*why, file));
 }

@@ -92,7 +92,7 @@ class EsiValueReader {
     auto value = parse_value(type_, type_ == DataType::bytes ? text : std::string_view(written));
     if (value && encode(type_, *value)) return std::move(*value);
     const auto why = value ? formatted("'{}' does not fit {}", shown(text), name(type_))
-                           : clip(value.error().message, 200);
+                           : clip(value.error().message.text(), 200);
     tell(element, limit, why, formatted("write a value of {}, or leave it out", name(type_)));
     return std::nullopt;
   }

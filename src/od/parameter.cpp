@@ -69,17 +69,17 @@ void read_limits(TableRow& row, Parameter& out) {
   out.min = row.value(kMin, out.type);
   out.max = row.value(kMax, out.type);
   if (out.min && out.max && compare_numbers(*out.min, *out.max) > 0)
-    return row.refuse(formatted("{}: min is above max", out.id));
+    return row.refuse(message("{}: min is above max", out.id));
   if (!out.default_value) return;
   const auto standard = to_string(*out.default_value);
-  const std::string hint = "correct the default, the limit or the scale";
+  const Message hint = "correct the default, the limit or the scale";
   if (out.min && compare_numbers(*out.default_value, *out.min) < 0)
-    row.refuse(formatted("{}: the default {} is below the minimum {} (raw numbers)", out.id, standard,
-                         to_string(*out.min)),
+    row.refuse(message("{}: the default {} is below the minimum {} (raw numbers)", out.id, standard,
+                       to_string(*out.min)),
                hint);
   if (out.max && compare_numbers(*out.default_value, *out.max) > 0)
-    row.refuse(formatted("{}: the default {} is above the maximum {} (raw numbers)", out.id, standard,
-                         to_string(*out.max)),
+    row.refuse(message("{}: the default {} is above the maximum {} (raw numbers)", out.id, standard,
+                       to_string(*out.max)),
                hint);
 }
 
@@ -90,7 +90,7 @@ Parameter read_row(TableRow& row) {
   out.object = row.object(kObject);
   const auto type = parse_data_type(row.cell(kType));
   out.type = type.value_or(out.type);
-  if (!type) row.refuse(kType, formatted("a data type: {}", kTypes));
+  if (!type) row.refuse(kType, message("a data type: {}", kTypes));
   if (const auto access = parse_access(row.cell(kAccess)))
     out.access = *access;
   else
@@ -102,7 +102,7 @@ Parameter read_row(TableRow& row) {
   out.effect = row.effect(kEffect);
   out.labels = row.labels(kEnum, kEnumZh);
   out.name = std::string(row.cell(kName));
-  if (out.name.empty()) row.refuse(formatted("{} has no name", out.id));
+  if (out.name.empty()) row.refuse(message("{} has no name", out.id));
   out.name_zh = std::string(row.cell(kNameZh));
   out.group = std::string(row.cell(kGroup));
   read_flags(row, out);
@@ -128,10 +128,10 @@ std::vector<Parameter> read_parameters(std::string_view csv, std::string_view fi
     TableRow row(cells, columns, kColumns, file);
     auto parameter = read_row(row);
     parameter.file_line = cells.line;
-    if (!ids.insert(lower(parameter.id)).second) row.refuse(formatted("{} appears twice", parameter.id));
+    if (!ids.insert(lower(parameter.id)).second) row.refuse(message("{} appears twice", parameter.id));
     if (parameter.object && !objects.insert(*parameter.object).second)
-      row.refuse(formatted("{}: object {} belongs to another parameter as well", parameter.id,
-                           to_string(*parameter.object)));
+      row.refuse(message("{}: object {} belongs to another parameter as well", parameter.id,
+                         to_string(*parameter.object)));
     errors.insert(errors.end(), row.errors().begin(), row.errors().end());
     if (row.errors().empty()) out.push_back(std::move(parameter));
   }

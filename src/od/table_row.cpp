@@ -34,7 +34,8 @@ TableColumns TableColumns::find(const CsvTable& table, std::span<const std::stri
     if (std::find(known.begin(), known.end(), column) != known.end()) continue;
     auto hint = did_you_mean(column, names);
     if (hint.empty()) hint = "write one of " + quoted;
-    errors.push_back(file_error(file, 1, formatted("column '{}' is unknown", column), std::move(hint)));
+    errors.push_back(
+        file_error(file, 1, message("column '{}' is unknown", as_it_is(column)), std::move(hint)));
   }
   TableColumns out;
   for (const auto name : known) out.places_.push_back(table.column(name));
@@ -46,11 +47,11 @@ std::string_view TableRow::cell(std::size_t column) const {
   return place < row_->cells.size() ? std::string_view(row_->cells[place]) : std::string_view();
 }
 
-void TableRow::refuse(std::size_t column, std::string_view expected) {
-  refuse(formatted("column {}: '{}' is not {}", names_[column], cell(column), expected));
+void TableRow::refuse(std::size_t column, const Message& expected) {
+  refuse(message("column '{}': '{}' is not {}", as_it_is(names_[column]), as_it_is(cell(column)), expected));
 }
 
-void TableRow::refuse(std::string what, std::string hint) {
+void TableRow::refuse(const Message& what, Message hint) {
   errors_.push_back(file_error(file_, row_->line, what, std::move(hint)));
 }
 
@@ -87,7 +88,7 @@ std::optional<Value> TableRow::value(std::size_t column, DataType type) {
   const auto text = cell(column);
   if (text.empty()) return std::nullopt;
   const auto value = parse_value(type, text);
-  if (!value) refuse(column, formatted("a value of {}: {}", name(type), value.error().message));
+  if (!value) refuse(column, message("a value of {}: {}", as_it_is(name(type)), value.error().message));
   return value ? std::optional<Value>(*value) : std::nullopt;
 }
 
@@ -100,15 +101,14 @@ std::vector<EnumLabel> TableRow::labels(std::size_t column, std::size_t column_z
   if (!english || !chinese) return out;
   for (const auto& label : *english) {
     if (std::any_of(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; }))
-      refuse(column, formatted("a list without doubles ({} appears twice)", label.first));
+      refuse(column, message("a list without doubles ({} appears twice)", label.first));
     out.push_back({label.first, label.second, {}});
   }
   for (const auto& label : *chinese) {
     const auto same =
         std::find_if(out.begin(), out.end(), [&](const EnumLabel& e) { return e.value == label.first; });
     if (same == out.end())
-      refuse(column_zh,
-             formatted("a list with the values of the English one ({} is not in it)", label.first));
+      refuse(column_zh, message("a list with the values of the English one ({} is not in it)", label.first));
     else
       same->label_zh = label.second;
   }

@@ -47,9 +47,9 @@ class TableRow {
   std::uint32_t number(std::size_t column);
 
   /// Notes that the cell is not what it should be.
-  void refuse(std::size_t column, std::string_view expected);
+  void refuse(std::size_t column, const Message& expected);
   /// Notes anything else that is wrong in the row.
-  void refuse(std::string what, std::string hint = {});
+  void refuse(const Message& what, Message hint = {});
   const std::vector<Error>& errors() const { return errors_; }
 
  private:

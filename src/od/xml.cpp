@@ -29,10 +29,10 @@ std::string_view parse_reason(const pugi::xml_parse_result& result) {
   }
 }
 
-tl::unexpected<Error> refuse_xml(std::string_view file, TextPlace place, std::string_view why) {
-  auto error = make_error(Errc::file,
-                          formatted("{}:{}:{}: not well-formed XML: {}", file, place.line, place.column, why),
-                          "is the file whole? get it again from the vendor, or correct this line");
+tl::unexpected<Error> refuse_xml(std::string_view file, TextPlace place, const Message& why) {
+  auto error = make_error(
+      Errc::file, message("{}:{}:{}: not well-formed XML: {}", as_it_is(file), place.line, place.column, why),
+      "is the file whole? get it again from the vendor, or correct this line");
   error.line = place.line;
   return fail(std::move(error));
 }
@@ -78,8 +78,9 @@ XmlDocument::~XmlDocument() = default;
 Result<XmlDocument> XmlDocument::parse(std::string_view text, std::string_view file) {
   const auto tags = std::count(text.begin(), text.end(), '<');
   if (static_cast<std::size_t>(tags) > kMostTags)
-    return fail(Errc::file, formatted("{}: {} tags are more than any device description has", file, tags),
-                formatted("it may have {}", kMostTags));
+    return fail(Errc::file,
+                message("{}: {} tags are more than any device description has", as_it_is(file), tags),
+                message("it may have {}", kMostTags));
   XmlDocument out;
   out.find_lines(text);
   const auto result = out.document_->load_buffer(

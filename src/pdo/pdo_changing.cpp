@@ -99,7 +99,7 @@ class Changing {
       if (const auto fits = check(job); !fits) {
         auto error = fits.error();
         error.node = job.present.node;
-        error.message = formatted("node {}: {}", job.present.node, error.message);
+        error.message = message("node {}: {}", node_name(job.present.node), error.message);
         return fail(std::move(error));
       }
       if (const auto planned = plan(job); !planned) return planned;

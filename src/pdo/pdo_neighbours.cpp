@@ -91,17 +91,17 @@ class Neighbours {
     const auto name = canopen::name(theirs.direction, theirs.number);
     const auto id = show::can_id_text(pdo.cob_id);
     if (pdo.direction == PdoDirection::receive && theirs.direction == PdoDirection::transmit) {
-      desk_->notices.push_back(
-          formatted("node {}: {} receives what {} of node {} sends with {}", node, mine, name, other, id));
+      desk_->notices.push_back(message("node {}: {} receives what {} of node {} sends with {}",
+                                       node_name(node), mine, name, node_name(other), id));
       return {};
     }
     const auto what = pdo.direction == PdoDirection::receive      ? "one frame would control both"
                       : theirs.direction == PdoDirection::receive ? "what one sends would control the other"
                                                                   : "both would send it";
-    return fail(
-        drive_error(Errc::refused, node,
-                    formatted("{}: CAN-ID {} is used by {} of node {}: {}", mine, id, name, other, what),
-                    formatted("use another one, or `pdo disable {} -n {}` first", name, other)));
+    return fail(drive_error(
+        Errc::refused, node,
+        message("{}: CAN-ID {} is used by {} of node {}: {}", mine, id, name, node_name(other), what),
+        message("use another one, or `pdo disable {} -n {}` first", as_it_is(name), node_name(other))));
   }
 
   show::Desk* desk_;

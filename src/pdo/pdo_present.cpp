@@ -20,13 +20,15 @@ const Pdo* PresentPdos::find(const Pdo& like) const {
 Result<Pdo> find_pdo(const PresentPdos& present, std::string_view name) {
   const auto like = canopen::parse_pdo_name(name);
   if (!like)
-    return fail(Errc::usage, formatted("'{}' is not a PDO", name), "RPDO1, TPDO2: as the drive sees them");
+    return fail(Errc::usage, message("'{}' is not a PDO", as_it_is(name)),
+                "RPDO1, TPDO2: as the drive sees them");
   if (const auto* found = present.find(*like)) return *found;
   std::string there;
   for (const auto& pdo : present.pdos) append(there, canopen::name(pdo.direction, pdo.number));
-  return fail(Errc::usage,
-              formatted("node {} has no {}", present.node, canopen::name(like->direction, like->number)),
-              there.empty() ? "it has no PDOs that can be read" : formatted("it has {}", there));
+  return fail(
+      Errc::usage,
+      message("node {} has no {}", node_name(present.node), canopen::name(like->direction, like->number)),
+      there.empty() ? "it has no PDOs that can be read" : message("it has {}", there));
 }
 
 }  // namespace servoctl::pdo

@@ -16,7 +16,8 @@ using drive::PdoRecipe;
 
 /// The error of one recipe, with its PDO in front.
 tl::unexpected<Error> of(const PdoRecipe& recipe, Error error) {
-  if (error.message.find(recipe.pdo) == std::string::npos) error.message = recipe.pdo + ": " + error.message;
+  if (error.message.text().find(recipe.pdo) == std::string::npos)
+    error.message = message("{}: {}", Verbatim{recipe.pdo}, error.message);
   if (recipe.line != 0) error.line = recipe.line;
   return fail(std::move(error));
 }
@@ -24,7 +25,7 @@ tl::unexpected<Error> of(const PdoRecipe& recipe, Error error) {
 Result<void> set_times(const PdoRecipe& recipe, Pdo& pdo) {
   if (recipe.inhibit_us) {
     if (*recipe.inhibit_us % 100 != 0 || *recipe.inhibit_us / 100 > 0xFFFF)
-      return fail(Errc::usage, formatted("inhibit time {} us is not possible", *recipe.inhibit_us),
+      return fail(Errc::usage, message("inhibit time {} us is not possible", *recipe.inhibit_us),
                   "in steps of 100 us, at most 6553500");
     pdo.inhibit = static_cast<std::uint16_t>(*recipe.inhibit_us / 100);
   }

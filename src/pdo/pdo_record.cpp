@@ -97,8 +97,8 @@ Result<std::optional<settings::RestoreJournal>> PdoRecord::take_up(const fs::pat
     if (!drive) return fail(drive.error());
     if (is_other_drive(backup->identity, *drive))
       return fail(Errc::refused,
-                  formatted("node {} ({}) is not the drive whose change was interrupted ({})", node_,
-                            text_of(*drive), text_of(backup->identity)),
+                  message("node {} ({}) is not the drive whose change was interrupted ({})", node_name(node_),
+                          text_of(*drive), text_of(backup->identity)),
                   "reconnect that drive at its node-ID, or copy the PDOs by `pdo save` and `pdo apply`");
     mine_ = true;
     file_ = record;
@@ -129,9 +129,9 @@ std::string PdoRecord::notice_of(const fs::path& record, const std::optional<Ide
       node_, since, record.string(), node_, backup ? " -d " + backup->family : "");
 }
 
-std::vector<std::string> PdoRecord::notices() const {
+std::vector<Message> PdoRecord::notices() const {
   const auto records = found();
-  std::vector<std::string> out;
+  std::vector<Message> out;
   if (records.empty()) return out;
   const auto drive = session::read_identity(*desk_->session, node_);
   for (const auto& record : records)

@@ -33,7 +33,7 @@ class PdoRecord {
   void settle();
 
   /// Of changes that did not come to their end: since when, and how they are put back.
-  std::vector<std::string> notices() const;
+  std::vector<Message> notices() const;
 
  private:
   std::vector<std::filesystem::path> found() const;

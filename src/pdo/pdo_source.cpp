@@ -86,8 +86,8 @@ Result<drive::PdoFile> from_backup(const drive::Profile& profile, const std::fil
 }
 
 tl::unexpected<Error> has_errors(const std::string& file, std::size_t count) {
-  return fail(Errc::file, formatted("{} has {} errors", file, count),
-              formatted("`eds check {}` shows them", file));
+  return fail(Errc::file, message("{} has {} errors", as_it_is(file), count),
+              message("`eds check {}` shows them", as_it_is(file)));
 }
 
 Result<drive::PdoFile> from_esi(const drive::Profile& profile, const std::string& word,
@@ -129,11 +129,12 @@ Result<drive::PdoFile> read_any(const drive::Profile& profile, const std::filesy
 Result<drive::PdoFile> read_pdo_source(const drive::Profile& profile, const std::filesystem::path& file) {
   auto out = read_any(profile, file);
   if (!out) return out;
-  if (out->pdos.empty()) return fail(Errc::negative, formatted("{} contains no PDOs", file.string()));
+  if (out->pdos.empty()) return fail(Errc::negative, message("{} contains no PDOs", as_it_is(file.string())));
   if (!out->family.empty() && !equals_nocase(out->family, profile.family))
-    return fail(Errc::refused,
-                formatted("{} is for {}, not for {}", file.string(), out->family, profile.family),
-                "edit a copy: remove the family, or set this one");
+    return fail(
+        Errc::refused,
+        message("{} is for {}, not for {}", as_it_is(file.string()), out->family, as_it_is(profile.family)),
+        "edit a copy: remove the family, or set this one");
   return out;
 }
 

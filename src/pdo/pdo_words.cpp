@@ -42,17 +42,19 @@ Result<PdoEntry> parse_mapped(const drive::Profile& profile, std::string_view te
   if (slash != std::string_view::npos) {
     const auto bits = parse_digits(text.substr(slash + 1), 10);
     if (!bits || *bits == 0 || *bits > 64)
-      return fail(Errc::usage, formatted("'{}': after the / comes the number of bits, 1 to 64", text));
+      return fail(Errc::usage,
+                  message("'{}': after the / comes the number of bits, 1 to 64", as_it_is(text)));
     return PdoEntry{target->address, static_cast<std::uint8_t>(*bits)};
   }
   const auto bits = show::bits_of(profile, target->address);
   if (!bits && !profile.is_generic() && profile.dictionary.find(target->address) == nullptr)
-    return fail(Errc::usage,
-                formatted("{} is not in the dictionary of {}", to_string(target->address), profile.family),
-                formatted("`objects -d {}` lists what can be mapped", profile.family));
+    return fail(
+        Errc::usage,
+        message("{} is not in the dictionary of {}", to_string(target->address), as_it_is(profile.family)),
+        message("`objects -d {}` lists what can be mapped", as_it_is(profile.family)));
   if (!bits || *bits == 0)
-    return fail(Errc::usage, formatted("the length of {} is not known", text),
-                formatted("give its bits: {}/16", to_string(target->address)));
+    return fail(Errc::usage, message("the length of {} is not known", text),
+                message("give its bits: {}/16", to_string(target->address)));
   return PdoEntry{target->address, *bits};
 }
 
@@ -62,7 +64,7 @@ Result<std::uint32_t> parse_can_id(std::string_view text, std::uint8_t node) {
   const auto value = number ? number->as_unsigned() : std::nullopt;
   const auto can_id = value.value_or(0) + (plus_node ? node : 0U);
   if (!value || *value > canopen::kPdoCobIdMask || can_id > canopen::kPdoCobIdMask)
-    return fail(Errc::usage, formatted("'{}' is not a CAN-ID for a PDO", text),
+    return fail(Errc::usage, message("'{}' is not a CAN-ID for a PDO", as_it_is(text)),
                 "write a number up to 0x7FF, or $NODEID+0x180; 29 bits: up to 0x1FFFFFFF");
   const bool extended = can_id > 0x7FF || (starts_with_nocase(text, "0x") && text.size() == 10);
   return static_cast<std::uint32_t>(can_id) | (extended ? canopen::kPdoExtended : 0U);
@@ -82,7 +84,7 @@ Result<void> switch_on(Pdo& pdo, std::uint8_t node) {
   pdo.cob_id &= ~canopen::kPdoInvalid;
   if ((pdo.cob_id & canopen::kPdoCobIdMask) != 0) return {};
   if (pdo.number > 4)
-    return fail(Errc::usage, formatted("{} has no CAN-ID yet", canopen::name(pdo.direction, pdo.number)),
+    return fail(Errc::usage, message("{} has no CAN-ID yet", canopen::name(pdo.direction, pdo.number)),
                 "give one: `pdo map … --cob-id 0x3A0`");
   const auto first = pdo.direction == canopen::PdoDirection::receive ? 0x200U : 0x180U;
   pdo.cob_id |= first + 0x100U * (pdo.number - 1U) + node;
@@ -107,7 +109,7 @@ Result<void> assign_pdo(const drive::Profile& profile, const PresentPdos& presen
   const auto* object = profile.dictionary.object(list->index);
   const std::size_t room = object == nullptr ? 0 : object->entries.back().address.sub;
   if (records.size() > room)
-    return fail(Errc::usage, formatted("{} cannot be assigned in addition: there is room for {}", name, room),
+    return fail(Errc::usage, message("{} cannot be assigned in addition: there is room for {}", name, room),
                 "`pdo show` lists what is assigned; `pdo disable` one first");
   out.insert_or_assign(*list, store_le(records.size(), 1));
   for (std::size_t i = 0; i < records.size(); ++i)

@@ -31,7 +31,7 @@ bool is_spare(const Pdo& pdo, const session::Values& values) {
 }  // namespace
 
 std::string reason_naming(std::uint8_t node, const Error& error) {
-  return error.node ? error.message : formatted("node {}: {}", node, error.message);
+  return error.node ? error.message.text() : formatted("node {}: {}", node, error.message.text());
 }
 
 Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration period,
@@ -76,7 +76,7 @@ Result<void> ScopeMapping::check_state(const std::vector<session::PlannedWrite>&
   if (!state) return fail(state.error());
   if (*state != session::NodeState::operational)
     return fail(Errc::negative, "it is not known to be operational, and TPDOs are sent only then",
-                formatted("`nmt start -n {}`", node_));
+                message("`nmt start -n {}`", node_name(node_)));
   return check_still(plan);
 }
 
@@ -149,11 +149,11 @@ void ScopeMapping::end() {
   changed_ = false;
   if (done) return record_.settle();
   auto error = done.error();
-  error.message =
-      formatted("{} could not be restored: {}; still changed, or not readable: {}",
-                canopen::name(pdo_.direction, pdo_.number), reason_naming(node_, error), astray());
+  error.message = message("{} could not be restored: {}; still changed, or not readable: {}",
+                          canopen::name(pdo_.direction, pdo_.number), reason_naming(node_, error), astray());
   error.node = node_;
-  error.hint = formatted("`pdo show -n {}` shows it; a restart of the drive loads the stored one", node_);
+  error.hint =
+      message("`pdo show -n {}` shows it; a restart of the drive loads the stored one", node_name(node_));
   desk_->errors.push_back(std::move(error));
 }
 

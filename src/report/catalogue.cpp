@@ -5,6 +5,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "report/text_kinds.hpp"
 #include "report/text_parts.hpp"
 #include "report/zh_po.hpp"
 
@@ -145,6 +146,17 @@ const Catalogue& chinese() {
 
 std::string in_chinese(std::string_view text, const Names* names) {
   return chinese().translated(text, names);
+}
+
+void put_into_chinese(Message& message, const Names* names) {
+  // Chinese has no plural.
+  const auto word = [](std::string_view literal) {
+    return is_plural(literal) ? std::string_view() : chinese_word(literal);
+  };
+  message = message.changed(word, [names](Message::Argument& argument) {
+    if (auto* text = std::get_if<std::string>(&argument))
+      *text = is_plural(*text) ? std::string() : in_chinese(std::string_view(*text), names);
+  });
 }
 
 std::string_view chinese_word(std::string_view english) {

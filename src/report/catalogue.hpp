@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/message.hpp"
 #include "report/phrase.hpp"
 #include "report/po.hpp"
 
@@ -56,6 +57,9 @@ const Catalogue& chinese();
 
 /// What a command says in English, in Chinese.
 std::string in_chinese(std::string_view text, const Names* names = nullptr);
+
+/// Puts a message into Chinese: its text by its literal, and what was put together elsewhere part by part.
+void put_into_chinese(Message& message, const Names* names = nullptr);
 
 /// A literal of the program in Chinese, with its placeholders; itself where there is none. It takes no time,
 /// so that each of many frames may ask.

@@ -245,8 +245,8 @@ tl::unexpected<Error> nested_too_deep(std::string_view text, std::size_t place, 
   const auto begin = text.substr(0, place).rfind('\n');
   auto error =
       fail(Errc::file,
-           formatted("{}:{}: column {}: lists and records are nested deeper than {} levels", file, line,
-                     begin == std::string_view::npos ? place + 1 : place - begin, kDeepestJson),
+           message("{}:{}: column {}: lists and records are nested deeper than {} levels", as_it_is(file),
+                   line, begin == std::string_view::npos ? place + 1 : place - begin, kDeepestJson),
            "servoctl writes no such file: is it the right one?")
           .value();
   error.line = line;
@@ -262,7 +262,7 @@ Result<Value> parse_json(std::string_view text, std::string_view file) {
   } catch (const Json::parse_error& problem) {
     return fail(file_error(file, line_at(text, problem.byte), "not JSON, or truncated"));
   } catch (const Json::exception& problem) {
-    return fail(Errc::file, formatted("{}: {}", file, problem.what()));
+    return fail(Errc::file, message("{}: {}", as_it_is(file), problem.what()));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/number.hpp"
 #include "base/text.hpp"
+#include "base/utf8.hpp"
 
 namespace servoctl::report {
 namespace {
@@ -14,20 +15,13 @@ constexpr std::size_t kMostSteps = 200;
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 bool is_figure(char c) { return c >= '0' && c <= '9'; }
 
-/// A Chinese character or one of its marks, of three bytes; `…` is none.
-bool begins_wide(std::string_view text) {
-  return text.size() >= 3 && static_cast<unsigned char>(text.front()) >= 0xE3 &&
-         static_cast<unsigned char>(text.front()) <= 0xEF;
-}
-bool ends_wide(std::string_view text) {
-  return text.size() >= 3 && begins_wide(text.substr(text.size() - 3));
-}
-
 /// Between Chinese and Chinese there is no blank, which stands beside a number or a name alone.
 void append_beside(std::string_view text, std::string& out) {
-  if (out.ends_with(' ') && begins_wide(text) && ends_wide(std::string_view(out).substr(0, out.size() - 1)))
+  if (out.ends_with(' ') && begins_in_chinese(text) &&
+      ends_in_chinese(std::string_view(out).substr(0, out.size() - 1)))
     out.pop_back();
-  if (text.starts_with(' ') && ends_wide(out) && begins_wide(text.substr(1))) text.remove_prefix(1);
+  if (text.starts_with(' ') && ends_in_chinese(out) && begins_in_chinese(text.substr(1)))
+    text.remove_prefix(1);
   out += text;
 }
 

@@ -39,7 +39,7 @@ class PoReader {
  private:
   enum class Part : std::uint8_t { none, id, text };
 
-  tl::unexpected<Error> wrong(std::string_view why) const {
+  tl::unexpected<Error> wrong(const Message& why) const {
     return fail(file_error(file_, static_cast<std::uint32_t>(line_), why));
   }
 
@@ -96,7 +96,7 @@ class PoReader {
     part_ = Part::none;
     if (!entry_.id.empty()) {
       if (!known_.insert(entry_.id).second)
-        return wrong(formatted("the msgid of line {} appears twice", entry_.line));
+        return wrong(message("the msgid of line {} appears twice", entry_.line));
       out_.push_back(std::move(entry_));
     }
     entry_ = {};

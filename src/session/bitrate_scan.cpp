@@ -61,13 +61,13 @@ Result<void> hold_silence(can::LinkControl& link, Duration time, const std::func
   const auto at = state->bitrate ? drive::bitrate_text(*state->bitrate) : "its bitrate";
   if (heard->frames > 0)
     return fail(Errc::refused,
-                formatted("{} is in use: {} frame{} heard at {}", link.name(), heard->frames,
-                          heard->frames == 1 ? " was" : "s were", at),
+                message("{} is in use: {} frame{} heard at {}", as_it_is(link.name()), heard->frames,
+                        heard->frames == 1 ? " was" : "s were", at),
                 "another bitrate would disturb whoever talks there; `scan` asks at this one");
-  return fail(
-      Errc::refused, formatted("{} is in use: {} errors were heard at {}", link.name(), heard->errors, at),
-      formatted("somebody talks at another bitrate: `bus detect {}` finds it without sending anything",
-                link.name()));
+  return fail(Errc::refused,
+              message("{} is in use: {} errors were heard at {}", as_it_is(link.name()), heard->errors, at),
+              message("somebody talks at another bitrate: `bus detect {}` finds it without sending anything",
+                      as_it_is(link.name())));
 }
 
 Result<BitrateScan> scan_bitrates(Session& session, can::LinkControl& link,

@@ -147,7 +147,8 @@ Result<Search> search_bitrate(can::LinkControl& link, const SearchOptions& optio
   const auto back = keeper.put_back();
   if (!back && found) {
     auto error = back.error();
-    error.message = formatted("{} could not be put back to what it was: {}", link.name(), error.message);
+    error.message =
+        message("{} could not be put back to what it was: {}", as_it_is(link.name()), error.message);
     return fail(std::move(error));
   }
   return found;

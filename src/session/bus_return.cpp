@@ -67,7 +67,7 @@ Result<void> BusReturn::hold(std::span<const Identity> before) {
     if (!change.empty())
       return fail(drive_error(
           Errc::refused, one.node,
-          formatted("another drive is there than before the bus was lost: {} is another", change),
+          message("another drive is there than before the bus was lost: {} is another", change),
           "`scan --long` shows who is there; then type the line anew, with the family of this drive"));
   }
   return {};
@@ -76,7 +76,7 @@ Result<void> BusReturn::hold(std::span<const Identity> before) {
 Result<void> BusReturn::wait(const Error& lost, TimePoint end) {
   const auto since = session_->now();
   if (since < flickered_ + kAgain || sends_regularly() || !session_->energised().empty()) return fail(lost);
-  tell_(false, formatted("{}: waiting until it can be used again", lost.message));
+  tell_(false, formatted("{}: waiting until it can be used again", lost.message.text()));
   const auto before = known();
   // One that can be opened at once was perhaps never away: its queue is full, or it fails otherwise.
   const bool at_once = session_->network().recover(since).has_value();

@@ -44,10 +44,10 @@ Result<void> check_wish(const std::string& name, const can::LinkState& now, cons
     return fail(can::link_refusal(name, {.bitrate = wish.bitrate.value_or(0)}, now, EOPNOTSUPP, {}));
   if (has_controller && !now.bitrate && !wish.bitrate)
     return fail(
-        Errc::usage, formatted("{} has no bitrate yet", name),
-        formatted("`bus up {0} --bitrate 500k`, with the bitrate of the drives; where nobody knows it, `bus "
-                  "detect {0}` listens for it",
-                  name));
+        Errc::usage, message("{} has no bitrate yet", as_it_is(name)),
+        message("`bus up {0} --bitrate 500k`, with the bitrate of the drives; where nobody knows it, `bus "
+                "detect {0}` listens for it",
+                as_it_is(name)));
   return {};
 }
 
@@ -79,7 +79,7 @@ Result<void> check_bitrate(can::LinkControl& link, const can::LinkChange& step) 
   const double wanted = step.bitrate.value_or(0);
   if (!now->bitrate || std::abs(*now->bitrate - wanted) <= wanted * kMostMissed) return {};
   auto error = can::link_refusal(link.name(), step, *now, EDOM, {});
-  error.hint = formatted("the nearest that it has is {} bit/s", *now->bitrate);
+  error.hint = message("the nearest that it has is {} bit/s", *now->bitrate);
   return fail(std::move(error));
 }
 
@@ -124,9 +124,10 @@ Result<void> set_up(can::LinkControl& link, const can::LinkState& before, const 
     const auto back = keeper.put_back();
     auto error = done.error();
     if (!back && was_down)
-      error.message += formatted("; {} could not be put back either, and is down", link.name());
+      error.message += message("; {} could not be put back either, and is down", as_it_is(link.name()));
     else if (was_down)
-      error.message += formatted("; {} is up again as before, at {}", link.name(), settings_text(before));
+      error.message +=
+          message("; {} is up again as before, at {}", as_it_is(link.name()), settings_text(before));
     return fail(std::move(error));
   }
   keeper.keep();

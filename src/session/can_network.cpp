@@ -144,9 +144,9 @@ Result<void> CanNetwork::on_report(can::ControllerReport report) {
     return fail(
         Errc::bus, url_ + ": " + std::string(can::text(report)),
         name.find(':') == std::string::npos
-            ? formatted("check bitrate, wiring and termination; then `bus up {}` takes it down and up again "
-                        "(with `--restart-ms 100` it comes back by itself)",
-                        name)
+            ? message("check bitrate, wiring and termination; then `bus up {}` takes it down and up again "
+                      "(with `--restart-ms 100` it comes back by itself)",
+                      as_it_is(name))
             : "check bitrate, wiring and termination; the next command opens the adapter anew");
   }
   if (report != last_report_) reports_.push_back(report);
@@ -154,8 +154,8 @@ Result<void> CanNetwork::on_report(can::ControllerReport report) {
   return {};
 }
 
-std::vector<std::string> CanNetwork::take_notices() {
-  std::vector<std::string> out;
+std::vector<Message> CanNetwork::take_notices() {
+  std::vector<Message> out;
   for (const auto report : take_reports()) out.push_back(url_ + ": " + std::string(can::text(report)));
   for (auto& notice : bus_->take_notices()) out.push_back(std::move(notice));
   for (auto& notice : std::exchange(habit_notices_, {})) out.push_back(std::move(notice));
@@ -164,7 +164,7 @@ std::vector<std::string> CanNetwork::take_notices() {
 
 void CanNetwork::tell_habit(std::uint8_t node, canopen::SdoHabit habit) {
   if (told_habits_.emplace(node, habit).second)
-    habit_notices_.push_back(formatted("node {}: {}", node, canopen::text(habit)));
+    habit_notices_.push_back(message("node {}: {}", node_name(node), canopen::text(habit)));
 }
 
 std::string CanNetwork::silence_hint(std::uint8_t node) const {
@@ -230,7 +230,7 @@ Result<void> CanNetwork::send(const can::Frame& frame) {
 Result<void> CanNetwork::request_state(std::uint8_t node, NodeState state) {
   const auto command = nmt_command(state);
   if (!command)
-    return fail(Errc::usage, formatted("no NMT command leads to state {}", name(state)),
+    return fail(Errc::usage, message("no NMT command leads to state {}", name(state)),
                 "use operational, pre-operational or stopped");
   return send(canopen::nmt_frame(*command, node));
 }

@@ -73,7 +73,7 @@ class CanNetwork final : public Network {
   std::unique_ptr<ProcessValues> process_values(std::uint8_t node,
                                                 std::span<const ObjectAddress> objects) override;
   /// What the controller reported, and what the bus has to say.
-  std::vector<std::string> take_notices() override;
+  std::vector<Message> take_notices() override;
   void flush_trace() override { bus_->flush_trace(); }
   Result<void> close() override {
     bus_->end_trace();
@@ -203,7 +203,7 @@ class CanNetwork final : public Network {
   TimePoint wire_error_at_ = TimePoint::min();  ///< When the last one came.
   std::vector<can::ControllerReport> reports_;
   std::set<std::pair<std::uint8_t, canopen::SdoHabit>> told_habits_;
-  std::vector<std::string> habit_notices_;
+  std::vector<Message> habit_notices_;
   std::optional<can::ControllerReport> last_report_;
   std::map<std::uint8_t, KnownPdos> pdos_;
   std::optional<canopen::LssAddress> lss_selection_;

@@ -10,6 +10,7 @@
 #include "ethercat/words.hpp"
 #include "session/ethercat_network.hpp"
 #include "session/ethercat_object_channel.hpp"
+#include "session/ring_state.hpp"
 
 namespace servoctl::session {
 namespace {
@@ -43,20 +44,16 @@ ethercat::SiiMailbox mailbox_in(ByteSpan managers) {
 
 Error EtherCatNetwork::nothing_back() const {
   if (!wire_.port().has_link())
-    return make_error(Errc::bus, formatted("{} has no link", url_),
+    return make_error(Errc::bus, message("{} has no link", as_it_is(url_)),
                       "is the cable plugged in, and is the first drive powered?");
   return make_error(
-      Errc::bus, formatted("{}: frames do not come back", url_),
+      Errc::bus, message("{}: frames do not come back", as_it_is(url_)),
       "is this the port with the drives? Between it and the first one there must be no switch, and "
       "nothing else may use it: NetworkManager can be told with `nmcli device set IFACE managed no`");
 }
 
 Error EtherCatNetwork::no_answer(std::uint8_t node) const {
-  if (node > present_)
-    return drive_error(Errc::timeout, node,
-                       formatted("there is no slave at this position: {} {} on the ring", present_,
-                                 present_ == 1 ? "is" : "are"),
-                       "`scan` shows them");
+  if (node > present_) return no_slave_at(node, present_);
   return drive_error(Errc::timeout, node, "it does not answer", silence_hint(node));
 }
 
@@ -67,7 +64,7 @@ Result<void> EtherCatNetwork::count_slaves() {
   if (reply.lost) return fail(nothing_back());
   if (reply.working_counter == 0)
     return fail(
-        Errc::bus, formatted("{}: no EtherCAT slave is there", url_),
+        Errc::bus, message("{}: no EtherCAT slave is there", as_it_is(url_)),
         "frames come back and nobody has touched them: is this the port with the drives, and is the first "
         "one powered?");
   present_ = reply.working_counter;
@@ -85,7 +82,7 @@ Result<std::vector<EtherCatNetwork::Glance>> EtherCatNetwork::glance() {
     auto slaves = glance_at(present_);
     if (!slaves || slaves->size() == std::min(present_, kMostNodes)) return slaves;
     if (tries == kTries)
-      return fail(make_error(Errc::bus, formatted("{}: its slaves cannot be counted", url_),
+      return fail(make_error(Errc::bus, message("{}: its slaves cannot be counted", as_it_is(url_)),
                              "working counters come back wrong: the error counters of `scan` show between "
                              "which slaves frames are damaged"));
   }
@@ -130,16 +127,18 @@ Result<void> EtherCatNetwork::check_free(const EtherCatNode& node, const std::ve
     if (!is_foreign(number, slaves[i].al)) continue;
     return fail(drive_error(
         Errc::refused, node.number,
-        formatted("another master works with this ring: node {} is in {}", number, name(slaves[i].al.state)),
-        formatted("servoctl only looks then: `scan`. If that master is gone, `state preop --take-over -n {}` "
-                  "takes the slave over",
-                  number)));
+        message("another master works with this ring: node {} is in {}", node_name(number),
+                name(slaves[i].al.state)),
+        message("servoctl only looks then: `scan`. If that master is gone, `state preop --take-over -n {}` "
+                "takes the slave over",
+                node_name(number))));
   }
   return {};
 }
 
 Error EtherCatNetwork::numbered_otherwise() const {
-  return make_error(Errc::bus, formatted("{}: the ring has changed since its slaves were numbered", url_),
+  return make_error(Errc::bus,
+                    message("{}: the ring has changed since its slaves were numbered", as_it_is(url_)),
                     "a node is a position on the ring: `scan` numbers them anew");
 }
 
@@ -195,14 +194,14 @@ Result<void> EtherCatNetwork::prepare(EtherCatNode& node) {
   if (found->al.state == AlState::init) return bring_up(node);
   if (found->al.state == AlState::boot)
     return fail(drive_error(Errc::negative, node.number, "it is in BOOT and takes firmware only",
-                            formatted("`{}`", state_command(node.number, NodeState::initialising))));
+                            message("`{}`", as_it_is(state_command(node.number, NodeState::initialising)))));
   if (!found->mailbox.exists() || !found->mailbox.doubt().empty())
     return fail(drive_error(
         Errc::protocol, node.number,
-        found->mailbox.exists() ? formatted("its mailbox cannot be used: {}", found->mailbox.doubt())
+        found->mailbox.exists() ? message("its mailbox cannot be used: {}", found->mailbox.doubt())
                                 : "its mailbox is not set up, so its objects cannot be reached",
-        formatted("`{}` and `{}` set it up anew", state_command(node.number, NodeState::initialising),
-                  state_command(node.number, NodeState::pre_operational))));
+        message("`{}` and `{}` set it up anew", as_it_is(state_command(node.number, NodeState::initialising)),
+                as_it_is(state_command(node.number, NodeState::pre_operational)))));
   // A slave takes a message with the counter of the last one, by whomever, for a repetition. One without
   // is always new.
   open_mailbox(node, found->mailbox, 0);
@@ -236,12 +235,13 @@ Result<ethercat::SiiMailbox> EtherCatNetwork::mailbox_place(EtherCatNode& node) 
                                            : std::string("by its SII its mailbox does not speak CoE");
   const auto& rules = node.rules;
   if (rules.exists()) {
-    notices_.push_back(formatted("node {}: {}; the mailbox of its family is used", node.number, why));
+    notices_.push_back(
+        message("node {}: {}; the mailbox of its family is used", node_name(node.number), why));
     return ethercat::SiiMailbox{rules.mailbox_out.start, rules.mailbox_out.size, rules.mailbox_in.start,
                                 rules.mailbox_in.size};
   }
   return fail(
-      drive_error(Errc::negative, node.number, formatted("its objects cannot be reached: {}", why),
+      drive_error(Errc::negative, node.number, message("its objects cannot be reached: {}", why),
                   "if it is a drive whose family servoctl knows, name the family with -d; `scan` shows "
                   "what the slaves say of themselves"));
 }

@@ -48,13 +48,14 @@ Result<void> EtherCatExchange::begin(AlState target) {
   if (!done && done.error().code == Errc::negative && has_clock_ && node_->al &&
       ethercat::demands_clock(node_->al->code)) {
     const auto why =
-        formatted("{} (AL status code {:04X}h)", ethercat::al_status_text(node_->al->code), node_->al->code);
+        message("{} (AL status code {:04X}h)", ethercat::al_status_text(node_->al->code), node_->al->code);
     synchronous_ = true;
     done = end();
     if (done) done = climb(target);
     if (done)
-      network_->notices_.push_back(formatted(
-          "node {}: it runs with SYNC0 every 4 ms, because it refused without: {}", node_->number, why));
+      network_->notices_.push_back(
+          message("node {}: it runs with SYNC0 every 4 ms, because it refused without: {}",
+                  node_name(node_->number), why));
   }
   if (!done) {
     auto error = done.error();
@@ -130,7 +131,7 @@ Result<void> EtherCatExchange::write_all(const std::vector<ethercat::Request>& r
   for (std::size_t i = 0; i < requests.size(); ++i)
     if (!(*replies)[i].done())
       return fail(drive_error(Errc::timeout, node_->number,
-                              formatted("register {:04X}h was not written", requests[i].address >> 16U),
+                              message("register {:04X}h was not written", requests[i].address >> 16U),
                               network_->silence_hint(node_->number)));
   return {};
 }
@@ -168,7 +169,7 @@ Result<void> EtherCatExchange::flow() {
                               "its cycles cannot be kept in step with its clock",
                               "is this machine too busy? A load beside servoctl delays its frames"));
     return fail(drive_error(Errc::timeout, node_->number,
-                            formatted("its process data are not complete: {}", cycle_trouble(counts)),
+                            message("its process data are not complete: {}", cycle_trouble(counts)),
                             network_->silence_hint(node_->number)));
   }
   return fail(drive_error(Errc::timeout, node_->number, "process data ended before they began",

@@ -45,7 +45,7 @@ Result<std::vector<EtherCatNetwork::Seen>> EtherCatNetwork::look(bool sii) {
     if (image)
       out[i].sii = ethercat::parse_sii(*image);
     else
-      out[i].sii_error = image.error().message;
+      out[i].sii_error = image.error().message.text();
   }
   return out;
 }
@@ -79,12 +79,12 @@ Result<std::vector<std::uint8_t>> EtherCatNetwork::nodes_with_objects() {
   }
   if (out.empty())
     return fail(Errc::negative,
-                formatted("{}: by their SII none of the {} slaves has CoE", url_, seen->size()),
+                message("{}: by their SII none of the {} slaves has CoE", as_it_is(url_), seen->size()),
                 "`scan` shows what they are; a node named with -n is asked all the same");
   if (!without.empty())
-    notices_.push_back(formatted("-n all leaves out node{} {}: no CoE, by {} SII",
-                                 without.size() == 1 ? "" : "s", fmt::join(without, ", "),
-                                 without.size() == 1 ? "its" : "their"));
+    notices_.push_back(message("-n all leaves out node{} {}: no CoE, by {} SII",
+                               without.size() == 1 ? "" : "s", node_names(without),
+                               without.size() == 1 ? "its" : "their"));
   return out;
 }
 

@@ -66,15 +66,15 @@ Result<std::vector<canopen::PdoEntry>> EtherCatExchange::side(std::uint16_t inde
   if (wanted == 0)
     return fail(
         drive_error(Errc::refused, node_->number, {index, 0},
-                    formatted("the assigned PDOs do not carry {}, and process data without it are no use",
-                              to_string(needed)),
+                    message("the assigned PDOs do not carry {}, and process data without it are no use",
+                            to_string(needed)),
                     "assign PDOs that do: `pdo show` shows them; or name the drive's family with -d"));
   node_->assigned.push_back(*before);
   if (const auto done = assign({index, 1, {wanted}}); !done) return fail(done.error());
   out = entries({wanted});
   if (!out || carries(*out, needed)) return out;
   return fail(drive_error(Errc::protocol, node_->number, {wanted, 0},
-                          formatted("it does not carry {}", to_string(needed)),
+                          message("it does not carry {}", to_string(needed)),
                           "the family's data names it for motions: is the drive of this family?"));
 }
 
@@ -108,8 +108,8 @@ Result<std::vector<EtherCatExchange::Preset>> EtherCatExchange::presets(
     if (!value || value->size() != size)
       return fail(drive_error(
           Errc::refused, node_->number, object,
-          value ? formatted("it is an output of {} bytes, and the drive gave {} for it", size, value->size())
-                : formatted("it is an output, and {} cannot be read to preset it", to_string(from)),
+          value ? message("it is an output of {} bytes, and the drive gave {} for it", size, value->size())
+                : message("it is an output, and {} cannot be read to preset it", to_string(from)),
           "outputs are preset from the drive: do not map one that cannot be read; `pdo show`"));
     out.push_back({object, *value});
   }

@@ -157,7 +157,7 @@ std::optional<NodeEvent> EtherCatNetwork::take_event() {
 Result<void> EtherCatNetwork::request_state(std::uint8_t number, NodeState state) {
   const auto target = al_state(state);
   if (!target)
-    return fail(drive_error(Errc::usage, number, formatted("EtherCAT has no state {}", name(state)),
+    return fail(drive_error(Errc::usage, number, message("EtherCAT has no state {}", name(state)),
                             "use init, preop, safeop or op"));
   auto& node = of(number);
   if (*target != AlState::op) node.kept = false;
@@ -229,7 +229,7 @@ std::unique_ptr<ProcessValues> EtherCatNetwork::process_values(std::uint8_t node
   return std::make_unique<EtherCatValues>(of(node), objects);
 }
 
-std::vector<std::string> EtherCatNetwork::take_notices() {
+std::vector<Message> EtherCatNetwork::take_notices() {
   auto out = std::exchange(notices_, {});
   for (auto& notice : wire_.port().take_notices()) out.push_back(std::move(notice));
   return out;

@@ -57,7 +57,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   void send_last_word(std::uint8_t node, ObjectAddress object, std::uint16_t value) noexcept override;
   std::unique_ptr<ProcessValues> process_values(std::uint8_t node,
                                                 std::span<const ObjectAddress> objects) override;
-  std::vector<std::string> take_notices() override;
+  std::vector<Message> take_notices() override;
   void flush_trace() override { wire_.port().flush_trace(); }
   Result<void> close() override;
   std::string_view state_title() const override { return "AL state"; }
@@ -192,7 +192,7 @@ class EtherCatNetwork final : public Network, private EtherCatTenant {
   bool changed_ = false;     ///< They stand otherwise than they were numbered.
   Watching watching_;
   std::deque<NodeEvent> events_;
-  std::vector<std::string> notices_;
+  std::vector<Message> notices_;
   Records records_{*this};
   Protection* protection_ = nullptr;
   Protection::Hold care_;  ///< While a slave is raised.

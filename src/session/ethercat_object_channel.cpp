@@ -123,9 +123,9 @@ void EtherCatObjectChannel::serve_image(TimePoint now) {
   const auto& counts = image.counts(node_->number);
   if (now < until_ && counts.missing < kMostMissing) return;
   const auto* what = way_ == Way::output ? "whether it was written is not known" : "its inputs did not come";
-  finish(fail(drive_error(Errc::timeout, node_->number, object_,
-                          formatted("{}: {}", what, cycle_trouble(counts)),
-                          network_->silence_hint(node_->number))));
+  finish(
+      fail(drive_error(Errc::timeout, node_->number, object_, message("{}: {}", what, cycle_trouble(counts)),
+                       network_->silence_hint(node_->number))));
 }
 
 void EtherCatObjectChannel::finish(Result<Bytes> result) {

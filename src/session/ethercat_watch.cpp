@@ -64,10 +64,10 @@ void EtherCatNetwork::on_count(const ethercat::Answer& answer) {
   watching_.lost = answer.lost ? watching_.lost + 1 : 0;
   if (answer.lost || !numbered_ || changed_ || answer.working_counter <= count_) return;
   changed_ = true;
-  notices_.push_back(formatted(
+  notices_.push_back(message(
       "{}: {} slaves are on the ring now, {} when they were numbered; a node is a position, and `scan` numbers "
       "them anew",
-      url_, answer.working_counter, count_));
+      as_it_is(url_), answer.working_counter, count_));
 }
 
 void EtherCatNetwork::on_state(EtherCatNode& node, const ethercat::Answer& answer, TimePoint now) {
@@ -129,11 +129,11 @@ void EtherCatNetwork::end_cycles(EtherCatNode& node) {
   const auto& rhythm = node.image->rhythm();
   const auto late = std::chrono::duration_cast<std::chrono::milliseconds>(rhythm.latest).count();
   if (counts.lost + counts.short_outputs + counts.short_inputs + rhythm.skipped > 0)
-    notices_.push_back(formatted(
+    notices_.push_back(message(
         "node {}: {} cycles of process data: {} frames lost, {} outputs not taken, {} inputs not given, {} cycles "
         "left out because servoctl was late (by {} ms at most)",
-        node.number, counts.cycles, counts.lost, counts.short_outputs, counts.short_inputs, rhythm.skipped,
-        late));
+        node_name(node.number), counts.cycles, counts.lost, counts.short_outputs, counts.short_inputs,
+        rhythm.skipped, late));
   node.image.reset();
 }
 

@@ -36,7 +36,7 @@ Result<void> download_in_size(Session& session, std::uint8_t node, ObjectAddress
   if (!fitting)
     return fail(drive_error(
         Errc::refused, node, object,
-        formatted("has {} bytes in this drive, not {}: the number does not fit", held->size(), data.size()),
+        message("has {} bytes in this drive, not {}: the number does not fit", held->size(), data.size()),
         "nothing was written to it"));
   written = session.download(node, object, *fitting);
   if (written && told != nullptr) *told = held->size();

@@ -80,7 +80,7 @@ Result<void> GatewayNetwork::introduce() {
     answer = ask(timeout_line(), kAnswerPatience);
   }
   if (!answer && answer.error().code == Errc::timeout)
-    return fail(Errc::bus, formatted("{} does not answer as a gateway of CiA 309-3", url_),
+    return fail(Errc::bus, message("{} does not answer as a gateway of CiA 309-3", as_it_is(url_)),
                 "does it serve another client? canopend serves one at a time");
   if (!answer) return fail(answer.error());
   takes_timeout_ = answer->kind == gateway::Answer::Kind::ok;
@@ -114,13 +114,13 @@ void GatewayNetwork::begin_anew() {
 }
 
 Error GatewayNetwork::gone() const {
-  return make_error(Errc::bus, formatted("the connection to {} is lost", url_),
+  return make_error(Errc::bus, message("the connection to {} is lost", as_it_is(url_)),
                     "the next line connects anew");
 }
 
 Error GatewayNetwork::silent() const {
   return make_error(
-      Errc::bus, formatted("{} does not answer any more", url_),
+      Errc::bus, message("{} does not answer any more", as_it_is(url_)),
       "check cable and network, and whether it hangs or serves another client (canopend serves one at a "
       "time); the next line connects anew");
 }
@@ -175,7 +175,7 @@ Result<bool> GatewayNetwork::step(TimePoint deadline) {
   if (outcome) hand_over(*outcome);
   if (!received && !outcome) return fail(lose(received.error()).error());
   if (client_.is_broken())
-    return fail(lose(make_error(Errc::bus, formatted("{}: what came is no answer of CiA 309-3", url_),
+    return fail(lose(make_error(Errc::bus, message("{}: what came is no answer of CiA 309-3", as_it_is(url_)),
                                 "is another service at this port?"))
                     .error());
   return outcome || !bytes.empty();
@@ -193,7 +193,7 @@ Result<gateway::Answer> GatewayNetwork::ask(std::string_view request, Duration p
     if (is_cancelled) return fail(Errc::interrupted, "interrupted");
     if (const auto stepped = step(client_.deadline()); !stepped) return fail(stepped.error());
   }
-  if (!own_) return fail(Errc::timeout, formatted("{} does not answer", url_));
+  if (!own_) return fail(Errc::timeout, message("{} does not answer", as_it_is(url_)));
   return *std::exchange(own_, std::nullopt);
 }
 
@@ -225,8 +225,8 @@ Result<void> GatewayNetwork::command(std::uint8_t node, canopen::NmtCommand comm
     return {};
   }
   return fail(Errc::refused,
-              formatted("the gateway answers '{}' to '{}': {} {}", answer->number, line,
-                        gateway::code_text(answer->number), printable(answer->text)),
+              message("the gateway answers '{}' to '{}': {} {}", as_it_is(answer->number), as_it_is(line),
+                      gateway::code_text(answer->number), printable(answer->text)),
               "one of servoctl only reads unless it was started with --allow write");
 }
 

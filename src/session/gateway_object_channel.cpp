@@ -75,23 +75,23 @@ Error GatewayObjectChannel::refusal(const gateway::Answer& answer) const {
     const auto said = canopen::sdo_abort_text(answer.number);
     const auto more = told_beside(answer.text, said);
     if (answer.number == canopen::sdo_abort::kTimeout)
-      return drive_error(Errc::timeout, node_, object_, formatted("no answer within {}", to_string(timeout_)),
+      return drive_error(Errc::timeout, node_, object_, message("no answer within {}", to_string(timeout_)),
                          more);
     if (is_broken_transfer(answer.number))
       return drive_error(Errc::protocol, node_, object_,
-                         formatted("the transfer broke off: {} (abort 0x{:08X})", said, answer.number), more);
+                         message("the transfer broke off: {} (abort 0x{:08X})", said, answer.number), more);
     auto error = drive_error(
         Errc::sdo_abort, node_, object_,
-        formatted("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(answer.number), answer.number),
+        message("refused: {} (abort 0x{:08X})", canopen::sdo_abort_text(answer.number), answer.number),
         writes_ ? canopen::sdo_abort_hint(answer.number, object_) : canopen::sdo_abort_hint(answer.number));
     error.abort_code = answer.number;
     return error;
   }
   const auto meaning = gateway::code_text(answer.number);
   const bool says_more = answer.text.find(meaning) == std::string::npos;
-  const auto what =
-      says_more ? formatted("the gateway answers {} ({}) {}", answer.number, meaning, printable(answer.text))
-                : formatted("the gateway answers {} ({})", answer.number, meaning);
+  const auto what = says_more ? message("the gateway answers {} ({}) {}", answer.number, meaning,
+                                        as_it_is(printable(answer.text)))
+                              : message("the gateway answers {} ({})", answer.number, meaning);
   switch (static_cast<gateway::Code>(answer.number)) {
     case gateway::Code::timeout: return drive_error(Errc::timeout, node_, object_, what);
     case gateway::Code::internal_state:
@@ -115,7 +115,7 @@ Result<Bytes> GatewayObjectChannel::result_of(const gateway::Client::Outcome& ou
   if (!writes_ && answer.kind == Kind::value)
     if (auto bytes = parse_base64(answer.text)) return std::move(*bytes);
   return fail(drive_error(Errc::protocol, node_, object_,
-                          formatted("the gateway answers '{}'", printable(answer.text.substr(0, 60))),
+                          message("the gateway answers '{}'", as_it_is(printable(answer.text.substr(0, 60)))),
                           "is it one of CiA 309-3, in its ASCII form?"));
 }
 

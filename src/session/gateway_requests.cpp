@@ -129,7 +129,7 @@ std::string GatewayServer::begin_transfer(Client& client, std::uint32_t sequence
   const auto whom = node_of(request, client, 1);
   if (whom.wrong) return error_line(sequence, *whom.wrong);
   const auto object = gateway::object_of(request);
-  if (!object) return error_line(sequence, Code::syntax, object.error().message);
+  if (!object) return error_line(sequence, Code::syntax, object.error().message.text());
   const auto words = std::span(request.words).subspan(3);
   const auto type = words.empty() ? std::optional(gateway::ValueType{}) : gateway::parse_value_type(words[0]);
   if (!type) return error_line(sequence, Code::syntax, formatted("'{}' is not a data type", words[0]));
@@ -140,7 +140,7 @@ std::string GatewayServer::begin_transfer(Client& client, std::uint32_t sequence
     order.request.transfer = client.blocks ? canopen::Transfer::domain : canopen::Transfer::automatic;
   } else {
     auto bytes = gateway::parse_value(*type, words.subspan(1));
-    if (!bytes) return error_line(sequence, Code::syntax, bytes.error().message);
+    if (!bytes) return error_line(sequence, Code::syntax, bytes.error().message.text());
     if (!options_.writes) {
       refuse(client, sequence, request);
       return {};

@@ -211,8 +211,8 @@ Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
   if (by.empty()) return {};
   return fail(drive_error(
       Errc::refused, node,
-      formatted("two nodes answer with this node-ID ({}): writes and motion are refused", by),
-      formatted(
+      message("two nodes answer with this node-ID ({}): writes and motion are refused", by),
+      message(
           "disconnect one and give it another node-ID, then `scan` (drives with LSS take one by their serial numbers: "
           "`help lss set-node`); `disable -n {}` and `nmt stop -n {}` reach both",
           node, node)));

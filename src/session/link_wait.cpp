@@ -32,9 +32,9 @@ bool LinkWait::comes_back(const Error& lost) {
   if (!first_) first_ = since;
   if (since - *first_ >= (only_failing_ ? kPatience : kMost)) return false;
   if (again)
-    tell(formatted("{}: {} is still tried after {}", lost.message, doing_, tenths(since - *first_)));
+    tell(formatted("{}: {} is still tried after {}", lost.message.text(), doing_, tenths(since - *first_)));
   else
-    tell(formatted("{}: {} waits for the bus, at most {}", lost.message, doing_,
+    tell(formatted("{}: {} waits for the bus, at most {}", lost.message.text(), doing_,
                    servoctl::to_string(kPatience)));
   const auto end = since + kPatience;
   for (;;) {
@@ -51,7 +51,7 @@ bool LinkWait::comes_back(const Error& lost) {
       return true;
     }
     if (time >= end || time < asked + kPause) {
-      tell(formatted("{} did not come back: {}", session_->url(), back.error().message));
+      tell(formatted("{} did not come back: {}", session_->url(), back.error().message.text()));
       return false;
     }
     tell(formatted("{} is still lost after {}: {} still waits", session_->url(), tenths(time - since),

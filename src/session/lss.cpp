@@ -30,19 +30,18 @@ std::string who(const std::optional<LssAddress>& address) {
 
 tl::unexpected<Error> nobody(const std::optional<LssAddress>& address) {
   return fail(Errc::timeout,
-              address ? formatted("no LSS slave answers to {}", to_string(*address))
+              address ? message("no LSS slave answers to {}", to_string(*address))
                       : std::string("no LSS slave answers on this bus"),
               "`lss scan` finds those without a node-ID; many drives have no LSS, or have it switched off: "
               "`help address` tells how their own parameter is written");
 }
 
 tl::unexpected<Error> several(const std::optional<LssAddress>& address, std::size_t count) {
-  return address
-             ? fail(Errc::refused, formatted("{} LSS slaves have {}", count, to_string(*address)),
-                    "nothing was set; switch all but one of them off, and take one after the other")
-             : fail(Errc::refused, formatted("{} LSS slaves answer: --only takes one that is alone", count),
-                    "nothing was set; name the one that is meant by --vendor, --product, --revision and "
-                    "--serial, or switch the others off");
+  return address ? fail(Errc::refused, message("{} LSS slaves have {}", count, to_string(*address)),
+                        "nothing was set; switch all but one of them off, and take one after the other")
+                 : fail(Errc::refused, message("{} LSS slaves answer: --only takes one that is alone", count),
+                        "nothing was set; name the one that is meant by --vendor, --product, --revision and "
+                        "--serial, or switch the others off");
 }
 
 }  // namespace
@@ -122,8 +121,8 @@ Result<LssSlave> LssDialogue::look(const std::optional<LssAddress>& address) {
     silent = false;
     if (address && number->front().number != *parts[i])
       return fail(Errc::protocol,
-                  formatted("{} says of itself 0x{:08X} where 0x{:08X} was selected", who(address),
-                            number->front().number, *parts[i]),
+                  message("{} says of itself 0x{:08X} where 0x{:08X} was selected", who(address),
+                          number->front().number, *parts[i]),
                   "nothing was set; is another slave in the configuration state?");
     *parts[i] = number->front().number;
   }
@@ -135,16 +134,16 @@ Result<void> LssDialogue::order(const canopen::LssRequest& request, std::string_
   const auto answers = ask(request, patience);
   if (!answers) return fail(answers.error());
   if (answers->empty())
-    return fail(Errc::timeout, formatted("the LSS slave did not say whether it has {}", what),
+    return fail(Errc::timeout, message("the LSS slave did not say whether it has {}", what),
                 "one that does not support a request may leave it unanswered; --timeout waits longer");
   const auto refusal =
       std::find_if(answers->begin(), answers->end(), [](const auto& answer) { return answer.error != 0; });
   if (refusal != answers->end())
     return fail(Errc::negative,
-                formatted("the LSS slave has not {}: {}", what, canopen::lss_error_text(*refusal)),
+                message("the LSS slave has not {}: {}", what, canopen::lss_error_text(*refusal)),
                 "CiA 305 leaves it to the maker what a slave supports: its manual says");
   if (answers->size() > 1)
-    return fail(Errc::refused, formatted("{} LSS slaves said that they have {}", answers->size(), what),
+    return fail(Errc::refused, message("{} LSS slaves said that they have {}", answers->size(), what),
                 "switch all but one off, and look at each with `lss inquire --only`");
   return {};
 }

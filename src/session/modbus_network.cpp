@@ -118,7 +118,7 @@ void ModbusNetwork::begin_anew() {
 Result<void> ModbusNetwork::check_stream() {
   if (!client_.broken()) return {};
   begin_anew();
-  return fail(Errc::bus, formatted("{}: what came is no Modbus TCP", url_),
+  return fail(Errc::bus, message("{}: what came is no Modbus TCP", as_it_is(url_)),
               "is another service at this port? The next line connects anew");
 }
 
@@ -141,7 +141,8 @@ Result<bool> ModbusNetwork::step(TimePoint deadline) {
   const auto outcome = client_.take_outcome();
   if (outcome && asking_ != nullptr) {
     if (outcome->echoed && !std::exchange(told_echo_, true))
-      notices_.push_back(formatted("{}: the adapter hands back what it sends; that is left out", url_));
+      notices_.push_back(
+          message("{}: the adapter hands back what it sends; that is left out", as_it_is(url_)));
     std::exchange(asking_, nullptr)->on_outcome(*outcome);
   }
   return outcome || !bytes->empty();
@@ -177,7 +178,7 @@ Duration ModbusNetwork::scan_patience() const {
   return client_.framing() == modbus::Framing::tcp ? 2 * kOfADrive : kOfADrive + 5 * port_->silence();
 }
 
-std::vector<std::string> ModbusNetwork::take_notices() { return std::exchange(notices_, {}); }
+std::vector<Message> ModbusNetwork::take_notices() { return std::exchange(notices_, {}); }
 
 std::string ModbusNetwork::silence_hint(std::uint8_t node) const {
   if (client_.framing() == modbus::Framing::tcp)

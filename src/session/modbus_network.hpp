@@ -48,7 +48,7 @@ class ModbusNetwork final : public Network {
   void send_last_word(std::uint8_t, ObjectAddress, std::uint16_t) noexcept override {}
   std::unique_ptr<ProcessValues> process_values(std::uint8_t node,
                                                 std::span<const ObjectAddress> objects) override;
-  std::vector<std::string> take_notices() override;
+  std::vector<Message> take_notices() override;
   bool takes_turns() const override { return true; }
   std::string silence_hint(std::uint8_t node) const override;
   ModbusNetwork* modbus() override { return this; }
@@ -106,7 +106,7 @@ class ModbusNetwork final : public Network {
   ModbusObjectChannel* asking_ = nullptr;     ///< Whose request is on the line.
   TimePoint stepped_at_{};
   bool told_echo_ = false;
-  std::vector<std::string> notices_;
+  std::vector<Message> notices_;
 };
 
 }  // namespace servoctl::session

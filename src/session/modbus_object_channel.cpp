@@ -96,10 +96,9 @@ Error ModbusObjectChannel::refusal(std::uint8_t exception) const {
 
 /// What came in instead says more than that nothing did.
 Error ModbusObjectChannel::silence(const Outcome& outcome) const {
-  auto out =
-      drive_error(Errc::timeout, node_, object_, formatted("no answer within {}", to_string(timeout_)));
+  auto out = drive_error(Errc::timeout, node_, object_, message("no answer within {}", to_string(timeout_)));
   if (way_ == Way::request || way_ == Way::presence)
-    out = drive_error(Errc::timeout, node_, formatted("no answer within {}", to_string(timeout_)));
+    out = drive_error(Errc::timeout, node_, message("no answer within {}", to_string(timeout_)));
   if (outcome.late) {
     out.message += lateness_text(*outcome.late);
     out.hint = lateness_hint(*outcome.late);
@@ -108,10 +107,10 @@ Error ModbusObjectChannel::silence(const Outcome& outcome) const {
     out.hint = "do two units, or two masters, talk on this line?";
   } else if (outcome.damaged > 0) {
     out.message += formatted("; {} bytes came that are no message", outcome.damaged);
-    out.hint = formatted(
+    out.hint = message(
         "has the drive another speed, parity or form of frames than {}? Two units of one address, and noise "
         "on the cable, look the same",
-        network_->url());
+        as_it_is(network_->url()));
   } else if (outcome.other_answer) {
     out.message += "; an answer to another request came";
     out.hint = "a drive that answers late needs a longer --timeout; is another master on this line?";
@@ -129,8 +128,8 @@ void ModbusObjectChannel::on_outcome(const Outcome& outcome) {
     case Outcome::Kind::malformed:
       if (way_ == Way::presence) break;
       return finish(fail(drive_error(Errc::protocol, node_, object_,
-                                     formatted("the answer to {} has another length than was asked for: {}",
-                                               what_text(), to_hex(outcome.pdu)),
+                                     message("the answer to {} has another length than was asked for: {}",
+                                             what_text(), to_hex(outcome.pdu)),
                                      "is this device what -d says?")));
     case Outcome::Kind::refused:
       if (repeats_while_busy(outcome.pdu[1])) return;

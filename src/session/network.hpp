@@ -201,7 +201,7 @@ class Network {
                                                         std::span<const ObjectAddress> objects) = 0;
 
   /// What people should know of the network beside its nodes, a line each, since the last call.
-  virtual std::vector<std::string> take_notices() { return {}; }
+  virtual std::vector<Message> take_notices() { return {}; }
   /// Whatever is kept back for a file is written to it now.
   virtual void flush_trace() {}
 

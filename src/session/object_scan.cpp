@@ -128,8 +128,8 @@ Result<void> ObjectScan::learn_lacking_code() {
   if (is_of_the_moment(*code))
     return fail(drive_error(
         Errc::refused, node_,
-        formatted("it refuses reads of any index with abort {:08X}h, which says nothing about the object",
-                  *code)));
+        message("it refuses reads of any index with abort {:08X}h, which says nothing about the object",
+                *code)));
   lacking_code_ = code;
   return {};
 }
@@ -155,7 +155,7 @@ Result<void> ObjectScan::scan_part(std::size_t count) {
   for (const auto object : wanted) state_->refusals.push_back({object, kRaisedAlarm});
   state_->done += count;
   auto error = quiet.error();
-  error.hint = formatted(
+  error.hint = message(
       "see with `status` whether the drive is in a fault; the same command goes on, and leaves out {:04X}h to "
       "{:04X}h",
       wanted.front().index, wanted.back().index);
@@ -180,8 +180,8 @@ Result<void> ObjectScan::judge_state(const std::vector<Result<Bytes>>& statuswor
     if (!state) return fail(state.error());
     if (*state == drive::DriveState::fault_reaction_active)
       return fail(drive_error(Errc::refused, node_, statuswords_[i],
-                              formatted("the axis still reacts to a fault after {} s: nothing more is read",
-                                        std::chrono::duration_cast<std::chrono::seconds>(kReaction).count()),
+                              message("the axis still reacts to a fault after {} s: nothing more is read",
+                                      std::chrono::duration_cast<std::chrono::seconds>(kReaction).count()),
                               "`status` shows when it has stopped; then the same command goes on"));
     if (drive::is_energised(*state))
       return fail(drive_error(Errc::refused, node_, statuswords_[i],
@@ -261,7 +261,7 @@ Result<std::vector<Result<Bytes>>> ObjectScan::read(std::span<const ObjectAddres
     if (silent_in_a_row_ >= kMostSilent)
       return fail(drive_error(
           Errc::timeout, node_, objects[i],
-          formatted("no answer, as for {} reads before; it answers those of 1000h", kMostSilent - 1),
+          message("no answer, as for {} reads before; it answers those of 1000h", kMostSilent - 1),
           "a drive that is silent about what it lacks cannot be scanned; --range leaves "
           "these indexes out"));
   }

@@ -73,7 +73,7 @@ Result<void> ObjectSurvey::take(std::vector<Result<Bytes>>& answers, std::span<c
       // The read of 1000h ends what the node still sends of the other.
       if (const auto alive = check_alive(answer.error()); !alive) return alive;
       answer = fail(drive_error(Errc::protocol, node_, objects[i],
-                                formatted("it sends more than {} bytes for this object", longest_)));
+                                message("it sends more than {} bytes for this object", longest_)));
     }
     if (!answer && !is_of_one_object(answer.error()) && answer.error().code != Errc::timeout)
       return fail(answer.error());
@@ -96,7 +96,7 @@ Result<void> ObjectSurvey::check_alarms(ObjectAddress last) {
   const auto what = known.empty() ? std::string("an EMCY") : formatted("the EMCY {:04X}h", known.back().code);
   return fail(drive_error(
       Errc::refused, node_,
-      formatted("it sent {} during the reads up to {}; nothing more is read", what, to_string(last)),
+      message("it sent {} during the reads up to {}; nothing more is read", what, to_string(last)),
       "`status` and `fault show` tell whether the drive is in a fault"));
 }
 

@@ -115,10 +115,8 @@ class OnlineReader {
   /// A drive that refuses the list has no dictionary to give.
   Error without_list(Error error) const {
     if (error.code != Errc::sdo_abort && error.code != Errc::protocol) return error;
-    const auto prefix = formatted("node {}: ", node_);
-    const auto why =
-        std::string_view(error.message).substr(error.message.starts_with(prefix) ? prefix.size() : 0);
-    error.message = formatted("node {} does not describe its objects (no SDO information): {}", node_, why);
+    error.message = message("node {} does not describe its objects (no SDO information): {}",
+                            node_name(node_), what_happened(error));
     return error;
   }
 
@@ -162,7 +160,7 @@ class OnlineReader {
   }
 
   Result<void> leave_out(ObjectAddress address, const Error& why) {
-    out_.left_out.push_back(formatted("{}: {}", to_string(address), why.message));
+    out_.left_out.push_back(message("{}: {}", as_it_is(to_string(address)), why.message));
     return {};
   }
 
@@ -210,9 +208,10 @@ std::optional<od::Entry> online_entry(const CoeEntry& described) {
 Result<OnlineDictionary> read_online_dictionary(Session& session, std::uint8_t node) {
   auto* network = session.ethercat();
   if (network == nullptr)
-    return fail(Errc::usage,
-                formatted("{} has no drives that describe their objects: that is of EtherCAT", session.url()),
-                "name a family with -d, or the data sheet of the drive, -d FILE.eds");
+    return fail(
+        Errc::usage,
+        message("{} has no drives that describe their objects: that is of EtherCAT", as_it_is(session.url())),
+        "name a family with -d, or the data sheet of the drive, -d FILE.eds");
   auto out = OnlineReader(session, *network, node).read();
   if (!out) return out;
   read_identity(session, node, out->sheet);

@@ -18,7 +18,7 @@ std::optional<od::Entry> online_entry(const ethercat::CoeEntry& described);
 /// The dictionary of a drive as it describes it itself, and the identity it has.
 struct OnlineDictionary {
   od::EdsFile sheet;
-  std::vector<std::string>
+  std::vector<Message>
       left_out;  ///< Objects and entries that it lists and does not describe, each with the reason.
 };
 

@@ -29,7 +29,7 @@ tl::unexpected<Error> no_bus(std::string_view url) {
   auto hint =
       did_you_mean(url.substr(0, url.find(':')), std::vector<std::string>(kSchemes.begin(), kSchemes.end()));
   if (hint.empty()) hint = kForms;
-  return fail(Errc::usage, formatted("'{}' is not a bus", url), std::move(hint));
+  return fail(Errc::usage, message("'{}' is not a bus", as_it_is(url)), std::move(hint));
 }
 
 Result<std::unique_ptr<can::Bus>> open_plain(std::string_view url, const BusOptions& options) {
@@ -55,7 +55,7 @@ Result<void> check_url(std::string_view url) {
                          : std::count(kSchemes.begin(), kSchemes.end(), url.substr(0, colon)) > 0;
   if (!known) return no_bus(url);
   if (colon + 1 == url.size())
-    return fail(Errc::usage, formatted("'{}' names no bus", url), std::string(kForms));
+    return fail(Errc::usage, message("'{}' names no bus", as_it_is(url)), std::string(kForms));
   const auto scheme = url.substr(0, colon);
   const auto rest = url.substr(colon + 1);
   if (scheme == "slcan")
@@ -69,11 +69,11 @@ Result<void> check_url(std::string_view url) {
 
 Result<std::unique_ptr<can::Bus>> open_bus(std::string_view url, const BusOptions& options) {
   if (is_pcap(options.trace))
-    return fail(
-        Errc::usage,
-        formatted("the trace of a CAN bus is no pcap: {} would hold lines of candump",
-                  options.trace.string()),
-        formatted("name it {}.log; .pcap is for the frames of a coe: bus", options.trace.stem().string()));
+    return fail(Errc::usage,
+                message("the trace of a CAN bus is no pcap: {} would hold lines of candump",
+                        as_it_is(options.trace.string())),
+                message("name it {}.log; .pcap is for the frames of a coe: bus",
+                        as_it_is(options.trace.stem().string())));
   auto bus = open_plain(url, options);
   if (!bus || options.trace.empty()) return bus;
   const auto colon = url.find(':');

@@ -21,8 +21,8 @@ constexpr std::string_view kScheme = "coe:";
 Result<void> check_trace_name(const std::filesystem::path& file) {
   if (is_pcap(file)) return {};
   return fail(Errc::usage,
-              formatted("the trace of an EtherCAT bus is a .pcap or .pcapng, not {}", file.string()),
-              formatted("name it {}.pcap; Wireshark opens it", file.stem().string()));
+              message("the trace of an EtherCAT bus is a .pcap or .pcapng, not {}", as_it_is(file.string())),
+              message("name it {}.pcap; Wireshark opens it", as_it_is(file.stem().string())));
 }
 
 /// What stands behind `coe:`, taken apart: `local` and `cell`; an interface has no scheme.
@@ -42,7 +42,7 @@ tl::unexpected<Error> no_port(std::string_view url, std::string_view scheme) {
   const std::string schemes[] = {"local", "sim"};
   auto hint = did_you_mean(scheme, schemes);
   if (hint.empty()) hint = "write coe:eth0, coe:local:NAME or coe:sim:FAMILY@1";
-  return fail(Errc::usage, formatted("'{}' is not an EtherCAT bus", url), std::move(hint));
+  return fail(Errc::usage, message("'{}' is not an EtherCAT bus", as_it_is(url)), std::move(hint));
 }
 
 Result<std::unique_ptr<ethernet::Port>> open_wire(std::string_view url, End end) {

@@ -16,7 +16,7 @@ constexpr std::string_view kModbusForms =
 
 Result<void> check_register_url(std::string_view url, const BusOptions& options) {
   if (!is_modbus(url) || url.size() == kModbus.size())
-    return fail(Errc::usage, formatted("'{}' is not a Modbus line", url), std::string(kModbusForms));
+    return fail(Errc::usage, message("'{}' is not a Modbus line", as_it_is(url)), std::string(kModbusForms));
   if (!options.trace.empty())
     return fail(Errc::usage, "--trace records frames of CAN and EtherCAT; there is no trace of Modbus",
                 "leave --trace out");
@@ -26,7 +26,7 @@ Result<void> check_register_url(std::string_view url, const BusOptions& options)
 /// What begins with neither is a name without a folder: `modbus:ttyUSB0`, or a scheme that there is not.
 Result<void> check_device(std::string_view rest) {
   if (rest.starts_with('/') || rest.starts_with('.')) return {};
-  return fail(Errc::usage, formatted("'{}' is neither a serial port nor a host", rest),
+  return fail(Errc::usage, message("'{}' is neither a serial port nor a host", as_it_is(rest)),
               std::string(kModbusForms));
 }
 

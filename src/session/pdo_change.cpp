@@ -142,7 +142,7 @@ class Change {
   }
 
   void note(const Error& refusal, std::string_view how) {
-    notices_.push_back(formatted("{}; tried again {}", refusal.message, how));
+    notices_.push_back(message("{}; tried again {}", refusal.message, how));
   }
 
   Session* session_;
@@ -151,7 +151,7 @@ class Change {
   const Values* present_;
   const Values* wanted_;
   RestoreOptions options_;
-  std::vector<std::string> notices_;
+  std::vector<Message> notices_;
   bool refused_state_ = false;  ///< Where the node was not put into a state: because of the one it was in.
 };
 

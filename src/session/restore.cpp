@@ -71,9 +71,9 @@ class Run {
     for (auto& [object, data] : out)
       if (object.index >= 0x2000 && object.index < 0x6000 && (unlocked || locked.count(object) == 0))
         data = other_than(object, data);
-    out_.notices.push_back(formatted(
+    out_.notices.push_back(message(
         "node {}: it was working in RAM, so every value is written to flash, not only those that differ",
-        node_));
+        node_name(node_)));
     return out;
   }
 

@@ -35,7 +35,7 @@ struct RestoreOutcome {
   /// the RAM alone.
   std::vector<ObjectAddress> in_flash;
   Kept kept = Kept::unknown;
-  std::vector<std::string> notices;
+  std::vector<Message> notices;
 };
 
 /// Carries the plan out: writes and reads back one value after the other, stores once at the end and only if

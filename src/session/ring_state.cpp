@@ -9,13 +9,6 @@ namespace {
 
 using ethercat::AlState;
 
-Error nobody_at(std::uint8_t node, std::size_t count) {
-  return drive_error(
-      Errc::timeout, node,
-      formatted("there is no slave at this position: {} {} on the ring", count, count == 1 ? "is" : "are"),
-      "`scan` shows them");
-}
-
 bool serves_objects(AlState state) {
   return state == AlState::preop || state == AlState::safeop || state == AlState::op;
 }
@@ -29,17 +22,23 @@ Result<void> check_without_power(Session& session, std::uint8_t node) {
   if (!power || !*power) return {};
   return fail(drive_error(Errc::refused, node,
                           "it is energised: a change of its AL state would de-energise it in motion",
-                          formatted("`disable -n {}` first", node)));
+                          message("`disable -n {}` first", node_name(node))));
 }
 
 }  // namespace
+
+Error no_slave_at(std::uint8_t node, std::size_t present) {
+  return drive_error(Errc::timeout, node,
+                     message("there is no slave at this position (slaves on the ring: {})", present),
+                     "`scan` shows them");
+}
 
 Result<std::vector<std::uint8_t>> foreign_nodes(EtherCatNetwork& ring, std::span<const std::uint8_t> nodes) {
   const auto seen = ring.look(false);
   if (!seen) return fail(seen.error());
   std::vector<std::uint8_t> out;
   for (const auto node : nodes) {
-    if (node > seen->size()) return fail(nobody_at(node, seen->size()));
+    if (node > seen->size()) return fail(no_slave_at(node, seen->size()));
     if ((*seen)[node - 1U].foreign) out.push_back(node);
   }
   return out;
@@ -55,7 +54,7 @@ Result<bool> has_power(Session& session, std::uint8_t node) {
 Result<void> change_al_state(Session& session, EtherCatNetwork& ring, std::uint8_t node, NodeState target) {
   const auto seen = ring.look(false);
   if (!seen) return fail(seen.error());
-  if (node > seen->size()) return fail(nobody_at(node, seen->size()));
+  if (node > seen->size()) return fail(no_slave_at(node, seen->size()));
   const auto& slave = (*seen)[node - 1U];
   const auto& al = slave.look.al;
   const bool stays = node_state(al.state) == target && !al.error && ring.image_of(node) != nullptr;

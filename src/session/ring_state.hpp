@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,6 +9,9 @@
 #include "session/session.hpp"
 
 namespace servoctl::session {
+
+/// Of a node beyond the last of so many slaves.
+Error no_slave_at(std::uint8_t node, std::size_t present);
 
 /// Which of these nodes another master exchanges process data with. Errors of the network, and Errc::timeout
 /// for a node that is no place on the ring.

@@ -133,7 +133,7 @@ Result<std::vector<std::uint8_t>> nodes_present(Session& session) {
   const auto found = find_nodes(session, canopen::every_node_id(), nullptr);
   if (!found) return fail(found.error());
   if (found->empty())
-    return fail(Errc::timeout, formatted("no node answered on {}", session.url()),
+    return fail(Errc::timeout, message("no node answered on {}", as_it_is(session.url())),
                 "check power, cable, termination and bitrate");
   std::vector<std::uint8_t> out;
   for (const auto& identity : *found) out.push_back(identity.node);

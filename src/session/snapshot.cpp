@@ -24,7 +24,8 @@ Result<void> take_answer(const Result<Bytes>& answer, SnapshotEntry& entry) {
   }
   if (answer.error().code != Errc::sdo_abort) return fail(answer.error());
   const auto code = answer.error().abort_code;
-  entry.left_out = code ? formatted("refused: {}", canopen::sdo_abort_text(*code)) : answer.error().message;
+  entry.left_out =
+      code ? formatted("refused: {}", canopen::sdo_abort_text(*code)) : answer.error().message.text();
   return {};
 }
 
@@ -46,7 +47,7 @@ Result<void> of_one_drive(Session& session, std::uint8_t node) {
   auto single = refuse_duplicate(session, node);
   if (single) return single;
   single.error().message =
-      formatted("what was read may be of either of two drives: {}", single.error().message);
+      message("what was read may be of either of two drives: {}", single.error().message);
   return single;
 }
 

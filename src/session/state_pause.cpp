@@ -69,11 +69,11 @@ Result<void> StatePause::leave(bool put_back) {
   if (!std::exchange(entered_, false)) return {};
   const bool known = before_ == NodeState::operational;
   if (known && put_back) return tell(*session_, node_, NodeState::operational);
-  notices_.push_back(formatted("node {}: it stays {}, {}; `{}` starts it", node_,
-                               session_->network().state_word(NodeState::pre_operational),
-                               known ? "because a restore is incomplete"
-                                     : "because neither heartbeat nor guarding showed its previous state",
-                               session_->network().state_command(node_, NodeState::operational)));
+  notices_.push_back(message("node {}: it stays {}, {}; `{}` starts it", node_name(node_),
+                             session_->network().state_word(NodeState::pre_operational),
+                             known ? "because a restore is incomplete"
+                                   : "because neither heartbeat nor guarding showed its previous state",
+                             as_it_is(session_->network().state_command(node_, NodeState::operational))));
   return {};
 }
 

@@ -34,14 +34,14 @@ class StatePause {
   }
 
   bool entered() const { return entered_; }
-  const std::vector<std::string>& notices() const { return notices_; }
+  const std::vector<Message>& notices() const { return notices_; }
 
  private:
   Session* session_;
   std::uint8_t node_;
   bool entered_ = false;
   std::optional<NodeState> before_;
-  std::vector<std::string> notices_;
+  std::vector<Message> notices_;
 };
 
 }  // namespace servoctl::session

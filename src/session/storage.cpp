@@ -165,10 +165,10 @@ Result<void> StorageScope::choose_memory() {
   if (!found) return fail(found.error());
   if (*found == memory_->now) return {};
   const auto told =
-      keep_ ? formatted("it acknowledged {} = {}, and did not take it: values would go to its RAM",
-                        rules.flash_switch, *value)
-            : formatted("it acknowledged {} = {}, and did not take it: values would go to its flash",
-                        rules.flash_switch, *value);
+      keep_ ? message("it acknowledged {} = {}, and did not take it: values would go to its RAM",
+                      as_it_is(rules.flash_switch), *value)
+            : message("it acknowledged {} = {}, and did not take it: values would go to its flash",
+                      as_it_is(rules.flash_switch), *value);
   return fail(
       drive_error(Errc::negative, node_, memory_->object, told, "nothing was written; set it at the panel"));
 }
@@ -193,13 +193,13 @@ void StorageScope::tell_memory(bool stays, std::size_t writes) {
   if (keep_ || rehearsal_ != nullptr) return;
   const auto& rules = profile_->rules.store;
   if (stays)
-    notices_.push_back(formatted(
+    notices_.push_back(message(
         "node {}: {} is now {}: values go to RAM and are lost at power-off; --keep makes them permanent",
-        node_, rules.flash_switch, *rules.to_ram));
+        node_name(node_), rules.flash_switch, *rules.to_ram));
   else if (writes > 0)
     notices_.push_back(
-        formatted("node {}: what was written went to RAM and is lost at power-off; {} is as it was again",
-                  node_, rules.flash_switch));
+        message("node {}: what was written went to RAM and is lost at power-off; {} is as it was again",
+                node_name(node_), rules.flash_switch));
 }
 
 Result<void> StorageScope::open(bool keep, bool unlock, bool choose) {
@@ -229,9 +229,9 @@ void StorageScope::tell_wear(std::size_t writes) {
   if (!profile_->rules.store.wears || writes == 0) return;
   auto& all = session_->flash_writes(node_);
   all += writes;
-  notices_.push_back(formatted("node {}: {} written to its flash{}; each write wears it", node_,
-                               writes == 1 ? "1 value was" : formatted("{} values were", writes),
-                               all == writes ? "" : formatted(" ({} since the bus was opened)", all)));
+  notices_.push_back(message("node {}: {} written to its flash{}; each write wears it", node_name(node_),
+                             writes == 1 ? "1 value was" : message("{} values were", writes),
+                             all == writes ? "" : message(" ({} since the bus was opened)", all)));
 }
 
 Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
@@ -242,7 +242,7 @@ Result<Kept> StorageScope::close(bool all_written, std::size_t writes) {
   const auto note = [&](const Result<void>& result, std::string_view what, std::string_view hint) {
     if (result) return;
     auto error = result.error();
-    error.message = formatted("{}: {}", what, error.message);
+    error.message = message("{}: {}", what, error.message);
     if (!hint.empty()) error.hint = hint;
     error.node = node_;
     if (wrong)

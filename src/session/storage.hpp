@@ -78,7 +78,7 @@ class StorageScope {
   Result<void> leave_flash();
 
   /// What was done beside the writes, in words.
-  const std::vector<std::string>& notices() const { return notices_; }
+  const std::vector<Message>& notices() const { return notices_; }
 
  private:
   struct Changed {
@@ -103,7 +103,7 @@ class StorageScope {
   bool keep_ = false;
   std::optional<Changed> memory_;
   std::optional<Changed> password_;
-  std::vector<std::string> notices_;
+  std::vector<Message> notices_;
   Rehearsal* rehearsal_ = nullptr;
 };
 

@@ -185,9 +185,9 @@ void TransferRun::skip_rest(Lane& channel, const Error& reason, bool reads_too) 
   const auto skipped = [&](std::size_t index) {
     if (!requests_[index].data && !reads_too) return false;
     Error error = reason;  // Keeps the object that failed: that is the cause.
-    error.message = formatted("node {}, object {}: skipped because {} failed", requests_[index].node,
-                              to_string(requests_[index].object),
-                              reason.object ? to_string(*reason.object) : "an object");
+    error.message =
+        message("node {}, object {}: skipped because {} failed", node_name(requests_[index].node),
+                to_string(requests_[index].object), reason.object ? to_string(*reason.object) : "an object");
     results_[index] = fail(std::move(error));
     --open_;
     return true;

@@ -114,9 +114,9 @@ std::optional<Error> refusal_of(const Session& session, std::uint8_t node, Objec
   const auto& profile = *session.wary_of(node);
   auto error = drive_error(
       Errc::sdo_abort, node, object,
-      formatted("not sent: the data of {} have no such object, and a request for it raises the alarm {}",
-                profile.family, alarm),
-      formatted("`objects -d {}` lists the objects of this family", profile.family));
+      message("not sent: the data of {} have no such object, and a request for it raises the alarm {}",
+              as_it_is(profile.family), alarm),
+      message("`objects -d {}` lists the objects of this family", as_it_is(profile.family)));
   const bool has_index = profile.dictionary.object(object.index) != nullptr;
   error.abort_code = has_index ? canopen::sdo_abort::kNoSubIndex : canopen::sdo_abort::kNoObject;
   return error;

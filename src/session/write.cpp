@@ -5,7 +5,7 @@
 namespace servoctl::session {
 namespace {
 
-Error about(const SdoRequest& request, Errc code, std::string what, std::string hint) {
+Error about(const SdoRequest& request, Errc code, Message what, Message hint) {
   return drive_error(code, request.node, request.object, what, std::move(hint));
 }
 
@@ -26,11 +26,11 @@ Result<Written> after_lost_answer(const SdoRequest& request, const Error& lost, 
   const std::string_view what = lost.code == Errc::timeout ? "the write was sent, but no answer came"
                                                            : "the write was sent, its answer was invalid";
   if (!found)
-    return fail(about(request, lost.code, formatted("{}, and the value cannot be read back", what),
+    return fail(about(request, lost.code, message("{}, and the value cannot be read back", what),
                       "whether the value was written is unknown: read it when the node answers again"));
   if (*found != *request.data)
     return fail(about(request, Errc::negative,
-                      formatted("{}, and it had no effect: the object holds {}", what, shown(*found)),
+                      message("{}, and it had no effect: the object holds {}", what, shown(*found)),
                       "write it again"));
   Written done;
   done.answer_lost = true;
@@ -63,10 +63,9 @@ Result<Written> after_answer(const SdoRequest& request, const Result<Bytes>& fou
     return fail(std::move(error));
   }
   if (*found != *request.data)
-    return fail(
-        about(request, Errc::negative,
-              formatted("the drive acknowledged {} but holds {}", shown(*request.data), shown(*found)),
-              "the drive limits or rounds the value, or another setting overrides it"));
+    return fail(about(request, Errc::negative,
+                      message("the drive acknowledged {} but holds {}", shown(*request.data), shown(*found)),
+                      "the drive limits or rounds the value, or another setting overrides it"));
   Written done;
   done.read_back = *found;
   return done;

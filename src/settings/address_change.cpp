@@ -28,7 +28,7 @@ tl::unexpected<Error> no_parameter(const show::Desk& desk) {
     return fail(Errc::usage, "a drive on EtherCAT has no node-ID: it is addressed by its place on the ring",
                 "the number after -n changes with the order of the cables");
   return fail(Errc::usage,
-              formatted("no parameter of a {} is known that sets its node-ID", desk.profile->family),
+              message("no parameter of a {} is known that sets its node-ID", desk.profile->family),
               "look into its manual: switches, its panel, or the vendor's software; where it is an object, "
               "`address NEW --object INDEX:SUB`");
 }
@@ -44,7 +44,7 @@ Result<void> add_write(show::Desk& desk, AddressChange& change, const std::strin
   const auto learned = learned_meaning(change.node, *target, as_held, *present);
   if (!learned)
     return fail(drive_error(Errc::refused, change.node, target->address,
-                            formatted("has {} bytes: it cannot hold a node-ID or bitrate", present->size())));
+                            message("has {} bytes: it cannot hold a node-ID or bitrate", present->size())));
   const auto& meaning = *learned;
   if (const auto fits = drive::check_limits(meaning, od::Value(value)); !fits) return fits;
   auto data = od::encode(meaning.type, od::Value(value));
@@ -59,9 +59,8 @@ Result<void> hold_serial(const Identity& identity, const AddressWish& wish) {
   if (!wish.serial || identity.serial == wish.serial) return {};
   return fail(drive_error(
       Errc::refused, identity.node, objects::kSerialNumber,
-      identity.serial
-          ? formatted("the drive has the serial number {}, not {}", *identity.serial, *wish.serial)
-          : formatted("the drive tells no serial number, {} is expected", *wish.serial),
+      identity.serial ? message("the drive has the serial number {}, not {}", *identity.serial, *wish.serial)
+                      : message("the drive tells no serial number, {} is expected", *wish.serial),
       "nothing was written; `info` shows what it is"));
 }
 
@@ -77,12 +76,12 @@ Result<void> hold_bitrate(show::Desk& desk, const AddressChange& change, const A
   if (!next || *next == *wish.bus_bitrate) return {};
   return fail(drive_error(
       Errc::refused, change.node, target->address,
-      formatted("it starts at {} next, and its bus has {}: to move it is to start anew, and it would be gone",
-                drive::bitrate_text(*next), drive::bitrate_text(*wish.bus_bitrate)),
-      formatted(
+      message("it starts at {} next, and its bus has {}: to move it is to start anew, and it would be gone",
+              drive::bitrate_text(*next), drive::bitrate_text(*wish.bus_bitrate)),
+      message(
           "nothing was written; `address --bitrate {} -n {}` takes that back, and all go to the other one "
           "with `address --bitrate {} -n all`",
-          *wish.bus_bitrate, change.node, *next)));
+          as_it_is(*wish.bus_bitrate), node_name(change.node), as_it_is(*next))));
 }
 
 void add_restart(const AddressChange& change, report::Table& plan) {
@@ -123,7 +122,7 @@ Result<AddressChange> plan_address(show::Desk& desk, std::uint8_t node, const Ad
   const auto& rules = desk.profile->rules.nmt;
   if (desk.session->network().is_ring() || (wish.node && rules.node_id.empty())) return no_parameter(desk);
   if (wish.node && (*wish.node < canopen::kFirstNode || *wish.node > canopen::kLastNode))
-    return fail(Errc::usage, formatted("{} is not a node-ID", *wish.node), "node-IDs are 1 to 127");
+    return fail(Errc::usage, message("{} is not a node-ID", *wish.node), "node-IDs are 1 to 127");
   const auto code =
       wish.bitrate ? drive::bitrate_code(*desk.profile, *wish.bitrate) : Result<std::int64_t>(0);
   if (!code) return fail(code.error());
@@ -161,9 +160,9 @@ Result<void> refuse_energised(session::Session& session, std::uint8_t node, std:
   return fail(drive_error(
       Errc::refused, node,
       !session::sharers_of(session, node).empty()
-          ? formatted("two drives have this node-ID, and one is energised: {} cannot be changed now", what)
-          : formatted("it is energised: {} cannot be changed now", what),
-      formatted("`disable -n {}` de-energises it; make sure that the load is held", node)));
+          ? message("two drives have this node-ID, and one is energised: {} cannot be changed now", what)
+          : message("it is energised: {} cannot be changed now", what),
+      message("`disable -n {}` de-energises it; make sure that the load is held", node_name(node))));
 }
 
 Result<void> refuse_energised_nodes(session::Session& session, std::string_view what) {
@@ -184,7 +183,7 @@ Result<void> refuse_taken(show::Desk& desk, std::span<const std::uint8_t> nodes,
     return {};
   }
   const auto& [node, how] = *used->begin();
-  return fail(drive_error(Errc::refused, node, formatted("this node-ID is taken: {}", how),
+  return fail(drive_error(Errc::refused, node, message("this node-ID is taken: {}", how),
                           "nothing was written; `scan` shows who is there"));
 }
 

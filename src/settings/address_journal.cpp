@@ -38,7 +38,7 @@ Record address_body(const AddressJournal& journal) {
           {"drives", std::move(drives)}};
 }
 
-tl::unexpected<Error> no_address_journal(std::string message) {
+tl::unexpected<Error> no_address_journal(Message message) {
   return fail(Errc::file, std::move(message),
               "it tells how far an interrupted plan came; `scan` shows where the drives are, and without the "
               "journal a plan of what is left can be made anew");

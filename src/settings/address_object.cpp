@@ -11,7 +11,7 @@ Result<drive::Profile> with_address_object(const drive::Profile& profile, std::s
   const auto& stated = profile.rules.nmt.node_id;
   if (!stated.empty() && drive::place_of(profile, stated) != target->address)
     return fail(Errc::refused,
-                formatted("--object {}: {} has its node-ID in {}", object, profile.family, stated),
+                message("--object {}: {} has its node-ID in {}", object, as_it_is(profile.family), stated),
                 "leave --object out");
   auto out = profile;
   if (stated.empty()) out.rules.nmt.node_id = to_string(target->address);
@@ -26,13 +26,13 @@ Result<void> check_address_object(show::Desk& desk, const drive::Profile& profil
   if (load_le(*held) != node)
     return fail(drive_error(
         Errc::refused, node, *place,
-        formatted("holds {}, not the node-ID {}: it may be another setting", load_le(*held), node),
-        formatted("look into the manual; `write {} VALUE -n {}`, then `store`, write without this check",
-                  to_string(*place), node)));
-  desk.notices.push_back(formatted(
+        message("holds {}, not the node-ID {}: it may be another setting", load_le(*held), node),
+        message("look into the manual; `write {} VALUE -n {}`, then `store`, write without this check",
+                as_it_is(to_string(*place)), node_name(node))));
+  desk.notices.push_back(message(
       "node {}: no data say when {} takes effect: after power-off and on at the latest, in some drives after "
       "`nmt reset`",
-      node, to_string(*place)));
+      node_name(node), to_string(*place)));
   return {};
 }
 

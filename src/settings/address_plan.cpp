@@ -25,7 +25,7 @@ class PlanReader {
   Result<std::vector<AddressRow>> read() {
     for (const auto& column : table_->columns)
       if (column != kNode && column != kNew && column != kFamily && column != kSerial && column != kBitrate)
-        return fail(file_error(file_, 1, formatted("unknown column '{}'", column),
+        return fail(file_error(file_, 1, message("unknown column '{}'", as_it_is(column)),
                                "a plan has the columns node,new and, where wanted, family,serial,bitrate"));
     if (!has(kNode) || !has(kNew))
       return fail(file_error(file_, 1, "the columns node and new are needed", "node,new"));
@@ -35,7 +35,8 @@ class PlanReader {
       if (!read) return fail(read.error());
       out.push_back(*read);
     }
-    if (out.empty()) return fail(Errc::file, formatted("{}: no drive stands in it", file_), "node,new");
+    if (out.empty())
+      return fail(Errc::file, message("{}: no drive stands in it", as_it_is(file_)), "node,new");
     if (const auto once = each_once(out); !once) return fail(once.error());
     return out;
   }
@@ -54,7 +55,7 @@ class PlanReader {
       const auto number = parse_integer(cell(row, column));
       const auto node = number ? number->as_unsigned() : std::nullopt;
       if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-        return fail(file_error(file_, row.line, formatted("'{}' is not a node-ID", cell(row, column)),
+        return fail(file_error(file_, row.line, message("'{}' is not a node-ID", as_it_is(cell(row, column))),
                                "node-IDs are 1 to 127"));
       *place = static_cast<std::uint8_t>(*node);
     }
@@ -63,7 +64,7 @@ class PlanReader {
       const auto number = parse_integer(text);
       const auto serial = number ? number->as_unsigned() : std::nullopt;
       if (!serial || *serial > 0xFFFF'FFFFU)
-        return fail(file_error(file_, row.line, formatted("'{}' is not a serial number", text),
+        return fail(file_error(file_, row.line, message("'{}' is not a serial number", as_it_is(text)),
                                "1018h:04 as `info` shows it"));
       out.serial = static_cast<std::uint32_t>(*serial);
     }
@@ -81,9 +82,9 @@ class PlanReader {
     std::optional<std::uint32_t> bitrate;
     for (const auto& row : rows) {
       if (!from.insert(row.node).second)
-        return fail(file_error(file_, row.line, formatted("node {} appears twice", row.node)));
+        return fail(file_error(file_, row.line, message("node {} appears twice", row.node)));
       if (!to.insert(row.to).second)
-        return fail(file_error(file_, row.line, formatted("two drives are to be node {}", row.to)));
+        return fail(file_error(file_, row.line, message("two drives are to be node {}", row.to)));
       if (!bitrate) bitrate = row.bitrate;
       if (row.bitrate && row.bitrate != bitrate)
         return fail(file_error(file_, row.line, "the drives of a bus have one bitrate, and the plan has two",
@@ -111,7 +112,7 @@ class Renumbering {
     for (const auto& row : rows_)
       if (taken_.count(row.to) > 0)
         return fail(drive_error(Errc::refused, row.node,
-                                formatted("it is to be node {}, and that node-ID is taken", row.to),
+                                message("it is to be node {}, and that node-ID is taken", row.to),
                                 "nothing was written; `scan` shows who is there"));
     while (const auto next = waiting()) {
       if (const auto moves = movable()) {

@@ -47,7 +47,7 @@ class PlanRun {
                                : FileLock::take(path_.string() + ".lock");
     if (!lock) return fail(lock.error());
     if (!desk_->dry_run && !*lock)
-      return fail(Errc::refused, formatted("another servoctl is carrying out {}", file_.string()),
+      return fail(Errc::refused, message("another servoctl is carrying out {}", as_it_is(file_.string())),
                   "wait until it ends, or find it with `ps`");
     if (const auto named = name_families(); !named) return fail(named.error());
     if (const auto known = take_up(); !known) return fail(known.error());
@@ -151,10 +151,10 @@ class PlanRun {
                                             [&](const AddressStep& step) { return step.row == i; }) > 1;
       if (rows_[i].bitrate && !journal_.steps.empty())
         desk_->notices.push_back(
-            formatted("node {}: its bitrate is written at the end, when all have moved", rows_[i].to));
+            message("node {}: its bitrate is written at the end, when all have moved", rows_[i].to));
       if (goes_aside)
-        desk_->notices.push_back(
-            formatted("node {}: it steps aside to a free node-ID first, see the steps", rows_[i].node));
+        desk_->notices.push_back(message("node {}: it steps aside to a free node-ID first, see the steps",
+                                         node_name(rows_[i].node)));
     }
     show_steps();
     bitrate_.tell_commands();

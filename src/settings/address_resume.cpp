@@ -15,15 +15,16 @@ Result<AddressJournal> begin_address_journal(const std::filesystem::path& plan, 
   auto found = read_address_journal(path);
   if (!found) return fail(found.error());
   if (*found && !resume)
-    return fail(Errc::refused, formatted("{} was interrupted", plan.string()),
+    return fail(Errc::refused, message("{} was interrupted", as_it_is(plan.string())),
                 "--resume continues it; `scan` shows where the drives are");
   if (!*found && resume)
-    return fail(Errc::usage, formatted("there is nothing to resume: {} does not exist", path.string()),
+    return fail(Errc::usage,
+                message("there is nothing to resume: {} does not exist", as_it_is(path.string())),
                 "leave --resume out");
   if (!*found)
     return AddressJournal{.checksum = std::move(checksum), .steps = {}, .families = {}, .drives = {}};
   if ((*found)->checksum != checksum || (*found)->drives.size() != rows)
-    return fail(Errc::refused, formatted("{} has changed since it was interrupted", plan.string()),
+    return fail(Errc::refused, message("{} has changed since it was interrupted", as_it_is(plan.string())),
                 "resuming needs the plan as it was");
   return std::move(**found);
 }
@@ -41,11 +42,11 @@ Result<void> settle_address_step(session::Session& session, AddressJournal& jour
   };
   if (is_at(step.from) && is_at(step.to))
     return fail(drive_error(Errc::refused, step.from,
-                            formatted("it was on its way to node {}, and both answer now", step.to),
+                            message("it was on its way to node {}, and both answer now", step.to),
                             "`scan --long` shows both; make sure that only one of them is there"));
   if (!is_at(step.from) && !is_at(step.to))
     return fail(drive_error(Errc::timeout, step.from,
-                            formatted("it was on its way to node {}, and is at neither", step.to),
+                            message("it was on its way to node {}, and is at neither", step.to),
                             "switch it off and on, and resume again"));
   if (is_at(step.to)) ++journal.done;
   journal.begun = false;
@@ -70,9 +71,10 @@ Result<void> same_families(std::span<const AddressRow> rows, std::span<const dri
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const auto& begun = journal.families[i];
     if (begun.empty() || begun == profiles[i]->family) continue;
-    auto error =
-        make_error(Errc::refused, formatted("it was begun as a {}, not as a {}", begun, profiles[i]->family),
-                   "resuming needs the families as they were");
+    auto error = make_error(
+        Errc::refused,
+        message("it was begun as a {}, not as a {}", as_it_is(begun), as_it_is(profiles[i]->family)),
+        "resuming needs the families as they were");
     return fail(with_row(rows[i], std::move(error)));
   }
   return {};
@@ -81,13 +83,13 @@ Result<void> same_families(std::span<const AddressRow> rows, std::span<const dri
 Error awaits_power(const AddressStep& step) {
   return drive_error(
       Errc::negative, step.from,
-      formatted("it is to be switched off and on before the next one moves: then it is node {}", step.to),
+      message("it is to be switched off and on before the next one moves: then it is node {}", step.to),
       "switch it off and on, then add --resume; --wait 5min waits for it");
 }
 
 Error with_row(const AddressRow& row, Error error) {
   if (!error.node) error.node = row.node;
-  error.message = formatted("line {}: {}", row.line, error.message);
+  error.message = message("line {}: {}", row.line, error.message);
   return error;
 }
 

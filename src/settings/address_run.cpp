@@ -87,14 +87,14 @@ class AddressRun {
   }
 
   Error written_but(Error error) const {
-    error.message = formatted("node {} was told to be node {}; whether it is one by now is not known: {}",
-                              change_->node, change_->to, error.message);
+    error.message = message("node {} was told to be node {}; whether it is one by now is not known: {}",
+                            node_name(change_->node), change_->to, error.message);
     error.hint = "`scan` shows who answers";
     error.node = change_->node;
     return error;
   }
 
-  Error about(Errc code, std::string what, std::string hint) const {
+  Error about(Errc code, Message what, Message hint) const {
     return drive_error(code, change_->node, what, std::move(hint));
   }
 
@@ -130,15 +130,15 @@ class AddressRun {
     else if (!show::change_of(change_->identity, *identity).empty())
       fail_with(AddressEnd::failed,
                 about(Errc::refused,
-                      formatted("node {} answers now, but is another drive: {}, and {} before", change_->to,
-                                serial_text(*identity), serial_text(change_->identity)),
+                      message("node {} answers now, but is another drive: {}, and {} before", change_->to,
+                              serial_text(*identity), serial_text(change_->identity)),
                       "`scan --long` shows who is there"));
     else if (old)
       fail_with(AddressEnd::failed,
                 about(Errc::negative,
-                      formatted("it answers as node {0} now, and node {1} still answers: two drives had the "
-                                "node-ID {1}, or one has two",
-                                change_->to, change_->node),
+                      message("it answers as node {0} now, and node {1} still answers: two drives had the "
+                              "node-ID {1}, or one has two",
+                              change_->to, change_->node),
                       "`scan --long` shows both"));
     else
       arrived();
@@ -148,28 +148,28 @@ class AddressRun {
     if (change_->bitrate)
       return void(
           fail_with(AddressEnd::failed,
-                    about(Errc::timeout, formatted("no answer at {}", drive::bitrate_text(*change_->bitrate)),
+                    about(Errc::timeout, message("no answer at {}", drive::bitrate_text(*change_->bitrate)),
                           "switch it off and on: at another bitrate it disturbs the others")));
     if (!old)
       return void(fail_with(
           AddressEnd::failed,
-          about(Errc::timeout, formatted("neither node {} nor node {} answers", change_->node, change_->to),
+          about(Errc::timeout, message("neither node {} nor node {} answers", change_->node, change_->to),
                 change_->restarts() ? "switch it off and on, and look with `scan`"
                                     : "is it still off? `scan` shows who answers")));
     const auto& name = desk_->profile->rules.nmt.node_id;
     const auto place = drive::place_of(*desk_->profile, name);
     const auto held = session_->upload(change_->node, *place);
     if (held && load_le(*held) != change_->to)
-      return void(fail_with(AddressEnd::failed,
-                            about(Errc::negative,
-                                  formatted("it forgot its new address when it restarted: {} is {} again",
-                                            name, load_le(*held)),
-                                  "does it keep its values? `store` may be refused, or its flash be worn")));
+      return void(fail_with(
+          AddressEnd::failed,
+          about(Errc::negative,
+                message("it forgot its new address when it restarted: {} is {} again", name, load_le(*held)),
+                "does it keep its values? `store` may be refused, or its flash be worn")));
     out_.end = AddressEnd::awaits_restart;
     const std::string_view why = change_->restarts() ? "the NMT command did not put its new address in force"
                                                      : "it was not switched off and on";
-    out_.error = about(Errc::negative, formatted("still answers at its old address: {}", why),
-                       formatted("switch it off and on; then it is node {}", change_->to));
+    out_.error = about(Errc::negative, message("still answers at its old address: {}", why),
+                       message("switch it off and on; then it is node {}", change_->to));
   }
 
   void arrived() {
@@ -179,9 +179,9 @@ class AddressRun {
     if (!change_->moves()) return;
     if (!tells_itself_apart(change_->identity))
       desk_->notices.push_back(
-          formatted("node {}: it tells no serial number of its own: that it is the drive that was node {} is "
-                    "known by its kind alone",
-                    change_->to, change_->node));
+          message("node {}: it tells no serial number of its own: that it is the drive that was node {} is "
+                  "known by its kind alone",
+                  node_name(change_->to), node_name(change_->node)));
     const auto now = read_own_cob_ids(*desk_, change_->to);
     if (!now) {
       out_.error = now.error();
@@ -196,10 +196,11 @@ class AddressRun {
     std::vector<std::string> each;
     for (const auto object : out_.stayed)
       each.push_back(formatted("{} = 0x{:08X}", to_string(object), load_le(now.at(object))));
-    desk_->notices.push_back(formatted(
-        "node {}: COB-IDs that did not follow, and still are those of node {}: {}; where that is not "
-        "meant, `pdo show -n {} -d {}` shows them, and `write` puts them right",
-        change_->to, change_->node, fmt::join(each, ", "), change_->to, change_->profile->family));
+    desk_->notices.push_back(
+        message("node {}: COB-IDs that did not follow, and still are those of node {}: {}; where that is not "
+                "meant, `pdo show -n {} -d {}` shows them, and `write` puts them right",
+                node_name(change_->to), change_->node, fmt::join(each, ", "), node_name(change_->to),
+                as_it_is(change_->profile->family)));
   }
 
   show::Desk* desk_;

@@ -80,7 +80,7 @@ class AddressWriting {
                    const std::vector<ObjectAddress>& in_flash) {
     const auto& store = desk_->profile->rules.store;
     if (error.code == Errc::sdo_abort && !store.unlock.empty() && !options_->unlock)
-      error.hint = formatted("it may be locked by {}: add --unlock", store.unlock);
+      error.hint = message("it may be locked by {}: add --unlock", store.unlock);
     if (back && in_flash.empty()) return fail_with(AddressEnd::as_before, std::move(error));
     if (back) {
       const auto flash = flash_error(desk_->profile, change_->node, in_flash);
@@ -89,8 +89,8 @@ class AddressWriting {
       return fail_with(AddressEnd::failed, std::move(error));
     }
     error.message += "; what it holds now is not known: " + back.error().message;
-    error.hint = formatted("before it is switched off: `read {} -n {}`, which holds from its next start on",
-                           to_string(object), change_->node);
+    error.hint = message("before it is switched off: `read {} -n {}`, which holds from its next start on",
+                         as_it_is(to_string(object)), node_name(change_->node));
     return fail_with(AddressEnd::failed, std::move(error));
   }
 
@@ -114,7 +114,8 @@ class AddressWriting {
       error.message +=
           "; the old one was written back, and could not be stored either: which of them it has after "
           "power-off is not known";
-      error.hint = formatted("`store -n {}` before it is switched off stores the old one", change_->node);
+      error.hint =
+          message("`store -n {}` before it is switched off stores the old one", node_name(change_->node));
       return fail_with(AddressEnd::failed, std::move(error));
     }
     error.message += "; and writing the old one back failed: " + back.error().message;

@@ -30,7 +30,7 @@ class BatchBackupReader {
  private:
   Result<void> check_choice() {
     if (!line_->family.empty() && line_->family != profile_->family)
-      return refuse(formatted("is for {}, not for {}", line_->family, profile_->family),
+      return refuse(message("is for {}, not for {}", as_it_is(line_->family), as_it_is(profile_->family)),
                     "give the file's family with -d if the drive really is one");
     if (line_->nodes.empty()) return {};
     if (line_->nodes.size() != 1 || line_->nodes.front() == 0 ||
@@ -50,14 +50,15 @@ class BatchBackupReader {
     auto meaning = drive::meaning(*target, node_);
     if (type) meaning = drive::fitted(meaning, od::size_of(*type).value_or(0));
     if (!type && !meaning.size_known)
-      return refuse(formatted("the manual does not tell the length of {}", target->in_sentence()),
+      return refuse(message("the manual does not tell the length of {}", target->in_sentence()),
                     "write it with a type: write OBJECT VALUE --type i32");
     if (drive::needs_bridge(meaning, text))
-      return refuse(formatted("only the drive itself can convert '{}'", text), "write the raw number");
+      return refuse(message("only the drive itself can convert '{}'", as_it_is(text)),
+                    "write the raw number");
     const auto value = drive::parse_quantity(meaning, text);
     const auto bytes = value ? od::encode(meaning.type, *value) : Result<Bytes>(fail(value.error()));
     if (!bytes)
-      return refuse(formatted("{}: {}", target->in_sentence(), bytes.error().message), bytes.error().hint);
+      return refuse(message("{}: {}", target->in_sentence(), bytes.error().message), bytes.error().hint);
     Backup::Entry entry;
     entry.object = target->address;
     entry.type = meaning.type;
@@ -67,8 +68,9 @@ class BatchBackupReader {
     return {};
   }
 
-  tl::unexpected<Error> refuse(std::string_view what, std::string hint) const {
-    auto error = fail(Errc::file, formatted("{}:{}: {}", *file_, line_->line, what), std::move(hint)).value();
+  tl::unexpected<Error> refuse(const Message& what, Message hint) const {
+    auto error =
+        fail(Errc::file, message("{}:{}: {}", as_it_is(*file_), line_->line, what), std::move(hint)).value();
     error.line = line_->line;
     return fail(std::move(error));
   }
@@ -91,7 +93,7 @@ Result<Backup> read_batch_backup(LineReader& lines_of, std::string_view text, co
     if (const auto taken = reader.take(line); !taken) return fail(taken.error());
   auto backup = reader.take_backup();
   if (backup.entries.empty())
-    return fail(Errc::file, formatted("{}: no line in it writes a value", file),
+    return fail(Errc::file, message("{}: no line in it writes a value", as_it_is(file)),
                 "a backup is JSON, a DCF, a table or lines such as `param set Pn0202=2`");
   return backup;
 }

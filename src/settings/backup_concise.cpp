@@ -48,16 +48,18 @@ Result<Backup> read_concise_dcf(std::string_view bytes, const std::string& file)
   for (std::uint32_t number = 1; number <= count; ++number) {
     auto entry = take_entry(taker);
     if (!entry)
-      return fail(Errc::file, formatted("{}:{}: the file ends within this entry, of {}", file, number, count),
+      return fail(Errc::file,
+                  message("{}:{}: the file ends within this entry, of {}", as_it_is(file), number, count),
                   std::string(kHint));
     entry->line = number;
     out.entries.push_back(std::move(*entry));
   }
   if (taker.left() > 0)
     return fail(Errc::file,
-                formatted("{}: {} bytes follow the last of {} entries", file, taker.left(), count),
+                message("{}: {} bytes follow the last of {} entries", as_it_is(file), taker.left(), count),
                 std::string(kHint));
-  if (count == 0) return fail(Errc::file, formatted("{}: there is no entry in it", file), std::string(kHint));
+  if (count == 0)
+    return fail(Errc::file, message("{}: there is no entry in it", as_it_is(file)), std::string(kHint));
   return out;
 }
 

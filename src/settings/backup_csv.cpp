@@ -58,7 +58,7 @@ class CsvBackupReader {
   Result<Backup> read() {
     if (!has("index") || (!has("raw") && !has("value")))
       return fail(Errc::file,
-                  formatted("{}: a table of settings has the columns index and raw or value", *file_),
+                  message("{}: a table of settings has the columns index and raw or value", as_it_is(*file_)),
                   "`backup --format csv` writes one");
     Backup out;
     for (const auto& row : table_->rows) {
@@ -84,9 +84,9 @@ class CsvBackupReader {
     if (cell("node").empty()) return {};
     const auto number = parse_digits(cell("node"), 10);
     if (!number || *number < canopen::kFirstNode || *number > canopen::kLastNode)
-      return refuse(formatted("'{}' is not a node-ID", clip(cell("node"), 40)), "1 to 127");
+      return refuse(message("'{}' is not a node-ID", as_it_is(clip(cell("node"), 40))), "1 to 127");
     if (node != 0 && node != *number)
-      return refuse(formatted("is of node {}, the rows before are of node {}", *number, node),
+      return refuse(message("is of node {}, the rows before are of node {}", *number, node),
                     "a table holds the settings of one drive");
     node = static_cast<std::uint8_t>(*number);
     return {};
@@ -96,7 +96,8 @@ class CsvBackupReader {
     auto written = std::string(cell("index"));
     if (!cell("sub").empty()) written += formatted(":{}", cell("sub"));
     const auto object = parse_object_address(written);
-    if (!object) return refuse(formatted("'{}' is not an index and sub-index", written), "0x2005,0x01");
+    if (!object)
+      return refuse(message("'{}' is not an index and sub-index", as_it_is(written)), "0x2005,0x01");
     entry.object = *object;
     const auto target = drive::target_at(profile_, *object);
     if (cell("raw").empty() && cell("value").empty()) {
@@ -111,7 +112,7 @@ class CsvBackupReader {
     const auto raw = cell("raw");
     entry.bytes = parse_hex_bytes(starts_with_nocase(raw, "hex:") ? raw.substr(4) : raw);
     if (!entry.bytes)
-      return refuse(formatted("raw: '{}' is not hexadecimal bytes", clip(raw, 40)), "hex:58 02");
+      return refuse(message("raw: '{}' is not hexadecimal bytes", as_it_is(clip(raw, 40))), "hex:58 02");
     return check_value(entry, target);
   }
 
@@ -134,7 +135,7 @@ class CsvBackupReader {
                     "give its type (column type: i16, i32 …), or raw bytes");
     auto sized = type ? drive::fitted(meaning, od::size_of(*type).value_or(0)) : meaning;
     auto bytes = bytes_of(sized);
-    if (!bytes) return refuse(formatted("value: {}", bytes.error().message), bytes.error().hint);
+    if (!bytes) return refuse(message("value: {}", bytes.error().message), bytes.error().hint);
     entry.bytes = std::move(*bytes);
     return {};
   }
@@ -148,12 +149,14 @@ class CsvBackupReader {
     if (cells.value.empty() || (trim(cells.value) == cell("value") && cells.unit == cell("unit"))) return {};
     const auto bytes = bytes_of(meaning);
     if (bytes && *bytes == *entry.bytes) return {};
-    return refuse(formatted("value {} and raw {} ({}) differ", quantity(), cell("raw"), cells.value),
+    return refuse(message("value {} and raw {} ({}) differ", as_it_is(quantity()), as_it_is(cell("raw")),
+                          as_it_is(cells.value)),
                   "correct one of them, and empty the other");
   }
 
-  tl::unexpected<Error> refuse(std::string_view what, std::string hint) const {
-    auto error = fail(Errc::file, formatted("{}:{}: {}", *file_, row_->line, what), std::move(hint)).value();
+  tl::unexpected<Error> refuse(const Message& what, Message hint) const {
+    auto error =
+        fail(Errc::file, message("{}:{}: {}", as_it_is(*file_), row_->line, what), std::move(hint)).value();
     error.line = row_->line;
     return fail(std::move(error));
   }

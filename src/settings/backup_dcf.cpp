@@ -69,15 +69,15 @@ std::string missing(const drive::Profile& profile, const Backup& backup, const B
 }  // namespace
 
 Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup,
-                             const std::string& file_name, std::vector<std::string>& notices) {
+                             const std::string& file_name, std::vector<Message>& notices) {
   if (profile.data_sheet.empty())
-    return fail(Errc::usage, formatted("{} has no data sheet (EDS) to make a DCF of", profile.family),
+    return fail(Errc::usage, message("{} has no data sheet (EDS) to make a DCF of", as_it_is(profile.family)),
                 "use --format json, csv or batch");
   const auto eds = od::read_sheet_file(profile.data_sheet.string());
   if (!eds) return fail(eds.error());
   if (od::is_xml(*eds))
     return fail(Errc::usage,
-                formatted("{} is an ESI, and a DCF is made of an EDS", profile.data_sheet.string()),
+                message("{} is an ESI, and a DCF is made of an EDS", as_it_is(profile.data_sheet.string())),
                 "use --format json, csv or batch");
   od::DcfSettings settings;
   settings.file_name = file_name;
@@ -125,8 +125,8 @@ Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, s
     entry.line = value.line;
     auto bytes = od::encode(value.type, value.value.for_node(dcf->node_id != 0 ? dcf->node_id : node));
     if (!bytes) {
-      out.unusable.push_back(fail(Errc::file, formatted("{}:{}: {}: {}", file, value.line,
-                                                        to_string(value.object), bytes.error().message))
+      out.unusable.push_back(fail(Errc::file, message("{}:{}: {}: {}", as_it_is(file), value.line,
+                                                      to_string(value.object), bytes.error().message))
                                  .value());
       continue;
     }

@@ -94,7 +94,7 @@ Result<Backup> read_foreign(const BackupSource& source, const drive::Profile& pr
     case BackupFormat::csv: return read_csv_backup(source.text, source.file, profile, node);
     case BackupFormat::batch:
       if (source.lines == nullptr)
-        return fail(Errc::file, formatted("{}: command lines are not understood here", source.file));
+        return fail(Errc::file, message("{}: command lines are not understood here", as_it_is(source.file)));
       return read_batch_backup(*source.lines, source.text, source.file, profile, node);
     default: return read_concise_dcf(source.text, source.file);
   }
@@ -105,22 +105,24 @@ void tell(show::Desk& desk, const BackupSource& source, const Backup& backup) {
   // That it fits itself says nothing.
   const auto fits =
       backup.family == source.file ? std::string() : "; its objects and values fit " + backup.family;
-  desk.notices.push_back(formatted("{} is a {}: it proves neither its drive nor its completeness{}",
-                                   source.file, title_of(source.format), fits));
+  desk.notices.push_back(message("{} is a {}: it proves neither its drive nor its completeness{}",
+                                 as_it_is(source.file), title_of(source.format), fits));
   constexpr std::size_t kMostNamed = 4;
   for (std::size_t i = 0; i < std::min(kMostNamed, backup.passed_over.size()); ++i)
     desk.notices.push_back(backup.passed_over[i]);
   if (backup.passed_over.size() > kMostNamed)
     desk.notices.push_back(
-        formatted("{}: {} more like this", source.file, backup.passed_over.size() - kMostNamed));
+        message("{}: {} more like this", as_it_is(source.file), backup.passed_over.size() - kMostNamed));
   std::size_t left_out = 0;
-  std::string names;
+  Message names;
   for (const auto& entry : backup.entries) {
     if (entry.bytes || ++left_out > kMostNamed) continue;
-    append(names, formatted("{} {} ({})", to_string(entry.object), entry.name, entry.left_out));
+    names += message("{}{} {} ({})", names.empty() ? "" : ", ", to_string(entry.object), as_it_is(entry.name),
+                     entry.left_out);
   }
-  if (left_out > kMostNamed) names += formatted(" and {} more", left_out - kMostNamed);
-  if (left_out > 0) desk.notices.push_back(formatted("{}: not settings, left out: {}", source.file, names));
+  if (left_out > kMostNamed) names += message(" and {} more", left_out - kMostNamed);
+  if (left_out > 0)
+    desk.notices.push_back(message("{}: not settings, left out: {}", as_it_is(source.file), names));
 }
 
 /// All are named, none is left out without being told to.
@@ -130,15 +132,15 @@ Result<void> judge_unusable(show::Desk& desk, const Backup& backup, bool skip_in
     for (auto error : backup.unusable) {
       error.code = Errc::negative;
       error.message += "; it is left out";
-      error.hint.clear();
+      error.hint = {};
       errors.push_back(std::move(error));
     }
     return {};
   }
   errors.insert(errors.end(), backup.unusable.begin() + 1, backup.unusable.end());
   auto error = backup.unusable.front();
-  error.hint += formatted("{}--skip-invalid leaves {} out", error.hint.empty() ? "" : "; ",
-                          backup.unusable.size() == 1 ? "it" : formatted("these {}", backup.unusable.size()));
+  error.hint += message("{}--skip-invalid leaves {} out", error.hint.empty() ? "" : "; ",
+                        backup.unusable.size() == 1 ? "it" : message("these {}", backup.unusable.size()));
   return fail(std::move(error));
 }
 
@@ -183,7 +185,8 @@ Backup make_backup(const show::Desk& desk, const session::Snapshot& snapshot) {
       if (const auto free =
               session::check_cob_id(desk.profile, entry.object, *entry.bytes, snapshot.identity.node);
           !free) {
-        stored.left_out = formatted("0x{:08X}{}{}", load_le(*entry.bytes), kConflict, free.error().message);
+        stored.left_out =
+            formatted("0x{:08X}{}{}", load_le(*entry.bytes), kConflict, free.error().message.text());
         stored.bytes.reset();
       }
     out.entries.push_back(std::move(stored));
@@ -194,8 +197,8 @@ Backup make_backup(const show::Desk& desk, const session::Snapshot& snapshot) {
 void tell_left_out(show::Desk& desk, const Backup& backup) {
   for (const auto& entry : backup.entries)
     if (!entry.bytes && entry.left_out.find(kConflict) != std::string::npos)
-      desk.notices.push_back(formatted("node {}: {} {} is left out: {}", backup.identity.node,
-                                       to_string(entry.object), entry.name, entry.left_out));
+      desk.notices.push_back(message("node {}: {} {} is left out: {}", node_name(backup.identity.node),
+                                     to_string(entry.object), entry.name, entry.left_out));
 }
 
 std::string backup_text(const show::Desk& desk, const Backup& backup) {
@@ -261,7 +264,7 @@ Result<Backup> read_backup(show::Desk& desk, const BackupSource& source, const d
                            std::uint8_t node, bool skip_invalid) {
   if (source.format == BackupFormat::json) return read_json_backup(source.text, source.file);
   if (profile == nullptr)
-    return fail(Errc::usage, formatted("{} does not name its drive family", source.file),
+    return fail(Errc::usage, message("{} does not name its drive family", as_it_is(source.file)),
                 "add -d FAMILY; `drives` lists families");
   auto backup = read_foreign(source, *profile, node);
   if (!backup) return backup;

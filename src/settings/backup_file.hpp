@@ -32,7 +32,7 @@ struct Backup {
   std::vector<Entry> entries;
   /// Of a file of another form: entries that cannot be used, with line and reason. They are not in `entries`.
   std::vector<Error> unusable;
-  std::vector<std::string> passed_over;  ///< Entries that mean nothing, with the line.
+  std::vector<Message> passed_over;  ///< Entries that mean nothing, with the line.
 };
 
 /// The forms settings are kept in. All are read; the last one is not written.

@@ -16,7 +16,7 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file);
 /// The family's data sheet with the values (od::write_dcf()). An entry that cannot stand in it is told in
 /// `notices`.
 Result<std::string> dcf_text(const drive::Profile& profile, const Backup& backup,
-                             const std::string& file_name, std::vector<std::string>& notices);
+                             const std::string& file_name, std::vector<Message>& notices);
 Result<Backup> read_dcf_backup(std::string_view text, const std::string& file, std::uint8_t node);
 
 /// `node,index,sub,parameter,name,type,value,unit,raw,left_out`: `raw` is what the drive holds (`hex:58 02`),

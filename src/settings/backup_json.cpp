@@ -83,14 +83,15 @@ std::uint32_t first_entry_line(std::string_view text) {
 Result<void> read_entries(const Value& document, std::uint32_t line, std::string_view file, Backup& out) {
   const auto* list = report::find(document, "entries");
   const auto* entries = list == nullptr ? nullptr : std::get_if<List>(&list->data());
-  if (entries == nullptr) return fail(Errc::file, formatted("{}: 'entries' is missing or wrong", file));
+  if (entries == nullptr)
+    return fail(Errc::file, message("{}: 'entries' is missing or wrong", as_it_is(file)));
   std::unordered_set<ObjectAddress> seen;
   for (const auto& record : *entries) {
     auto entry = read_entry(record, line++, file);
     if (!entry) return fail(entry.error());
     if (!seen.insert(entry->object).second)
       return fail(Errc::file,
-                  formatted("{}:{}: {} appears twice", file, entry->line, to_string(entry->object)));
+                  message("{}:{}: {} appears twice", as_it_is(file), entry->line, to_string(entry->object)));
     out.entries.push_back(std::move(*entry));
   }
   return {};
@@ -130,11 +131,11 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   if (!document) return fail(document.error());
   show::FieldReader fields(*document, file);
   const auto version = fields.number("servoctl_backup", true);
-  if (!version) return fail(Errc::file, formatted("{}: this is not a servoctl backup", file));
+  if (!version) return fail(Errc::file, message("{}: this is not a servoctl backup", as_it_is(file)));
   if (*version > static_cast<std::uint64_t>(kBackupVersion))
     return fail(Errc::file,
-                formatted("{}: its version {} is newer than this program supports ({})", file, *version,
-                          kBackupVersion),
+                message("{}: its version {} is newer than this program supports ({})", as_it_is(file),
+                        *version, kBackupVersion),
                 "read it with the servoctl that wrote it, or a newer one");
   Backup out;
   out.tool = fields.text("tool");
@@ -149,9 +150,10 @@ Result<Backup> read_json_backup(std::string_view text, const std::string& file) 
   if (const auto read = read_entries(*document, first_entry_line(text), file, out); !read)
     return fail(read.error());
   if (sum != checksum(out))
-    return fail(Errc::file,
-                formatted("{}: its checksum does not match: the file was changed after it was written", file),
-                "make the backup again");
+    return fail(
+        Errc::file,
+        message("{}: its checksum does not match: the file was changed after it was written", as_it_is(file)),
+        "make the backup again");
   out.proven = true;
   return out;
 }

@@ -17,11 +17,12 @@ bool is_of_procedure(ObjectAddress object) {
          (object.index >= 0x1C10 && object.index <= 0x1C2F);
 }
 
-tl::unexpected<Error> refuse(const std::string& file, const Backup::Entry& entry, std::string_view what,
-                             std::string hint) {
-  auto error = fail(Errc::file, formatted("{}:{}: {} {}", file, entry.line, to_string(entry.object), what),
-                    std::move(hint))
-                   .value();
+tl::unexpected<Error> refuse(const std::string& file, const Backup::Entry& entry, const Message& what,
+                             Message hint) {
+  auto error =
+      fail(Errc::file, message("{}:{}: {} {}", as_it_is(file), entry.line, to_string(entry.object), what),
+           std::move(hint))
+          .value();
   error.line = entry.line;
   error.object = entry.object;
   return fail(std::move(error));
@@ -38,7 +39,7 @@ Result<Bytes> resized(const Backup::Entry& entry, od::DataType type) {
   const auto value = od::decode(entry.type, *entry.bytes);
   if (!value || !od::is_integer(entry.type) || !od::is_integer(type))
     return fail(Errc::file,
-                formatted("has {} bytes, and {} is of another length", entry.bytes->size(), od::name(type)));
+                message("has {} bytes, and {} is of another length", entry.bytes->size(), od::name(type)));
   return od::encode(type, *value);
 }
 
@@ -49,7 +50,7 @@ Result<void> settle_value(Backup::Entry& entry, const drive::Target& target, con
   if (size && *size != entry.bytes->size()) {
     auto bytes = resized(entry, meaning.type);
     if (!bytes)
-      return refuse(file, entry, formatted("({}): {}", name_of(target), bytes.error().message),
+      return refuse(file, entry, message("({}): {}", name_of(target), bytes.error().message),
                     "is it a file of this drive family?");
     entry.bytes = std::move(*bytes);
   }
@@ -68,11 +69,11 @@ void settle(Backup& backup, const std::string& file, const drive::Profile& profi
   const auto take = [&](Backup::Entry& entry) -> Result<void> {
     const auto target = drive::target_at(&profile, entry.object);
     if (target.entry == nullptr && target.parameter == nullptr)
-      return refuse(file, entry, formatted("is unknown to {}", profile.family),
+      return refuse(file, entry, message("is unknown to {}", as_it_is(profile.family)),
                     "is it a file of this drive family? remove the entry when it is");
     if (!procedure || !is_of_procedure(entry.object))
       if (const auto first = entries.find(entry.object); first != entries.end())
-        return refuse(file, entry, formatted("appears again, first in {}", first->second.line),
+        return refuse(file, entry, message("appears again, first in {}", first->second.line),
                       "remove one of them");
     entry.id = target.parameter != nullptr ? target.parameter->id : std::string();
     entry.name = target.parameter != nullptr ? target.parameter->name : target.label();

@@ -22,7 +22,8 @@ bool is_file(const fs::path& path) {
 fs::path lock_of(const fs::path& before) { return journal_of(before).string() + ".lock"; }
 
 tl::unexpected<Error> refuse_second(const std::string& title, std::uint8_t node) {
-  return fail(Errc::refused, formatted("another servoctl is restoring {} into node {}", title, node),
+  return fail(Errc::refused,
+              message("another servoctl is restoring {} into node {}", as_it_is(title), node_name(node)),
               "wait until it ends, or find it with `ps`");
 }
 
@@ -60,7 +61,7 @@ class BeforeFileSearch {
     if (const auto clear = refuse_doubt(); !clear) return fail(clear.error());
     if (const auto free = choose(free_); !free || *free) return finish(free);
     return fail(Errc::file,
-                formatted("{} has a file of old values of {} drives already", title_, kMostDrives),
+                message("{} has a file of old values of {} drives already", as_it_is(title_), kMostDrives),
                 "move those that are not needed any more into another folder");
   }
 
@@ -75,8 +76,8 @@ class BeforeFileSearch {
     // What is wrong with it as well is told first.
     if (const auto journal = read_journal(*desk_, journal_of(name)); !journal) return fail(journal.error());
     return fail(Errc::file,
-                formatted("{} cannot be read: nothing tells of which drive {} is", name.string(),
-                          journal_of(name).string()),
+                message("{} cannot be read: nothing tells of which drive {} is", as_it_is(name.string()),
+                        as_it_is(journal_of(name).string())),
                 "put the file of the old values back, or delete the journal if it is not to be resumed");
   }
 
@@ -125,11 +126,11 @@ class BeforeFileSearch {
       if (!*lock) continue;
       return fail(drive_error(
           Errc::refused, drive_.node,
-          formatted("a restore of {} was interrupted on {}, and nothing tells whether this is that drive",
-                    title_, other.origin.bus),
-          formatted("where it is, `restore {} -n {} --force` restores the old values; where it is not, move "
-                    "that file and its journal into another folder",
-                    other.path.string(), drive_.node)));
+          message("a restore of {} was interrupted on {}, and nothing tells whether this is that drive",
+                  as_it_is(title_), as_it_is(other.origin.bus)),
+          message("where it is, `restore {} -n {} --force` restores the old values; where it is not, move "
+                  "that file and its journal into another folder",
+                  as_it_is(other.path.string()), node_name(drive_.node))));
     }
     return {};
   }

@@ -110,8 +110,8 @@ class SwitchRun {
     }
     return fail(drive_error(
         Errc::negative, before_.front(),
-        formatted("still answers: the drives were not switched off, and {} stays at {}", plan_->link->name(),
-                  session::settings_text(plan_->before)),
+        message("still answers: the drives were not switched off, and {} stays at {}",
+                as_it_is(plan_->link->name()), session::settings_text(plan_->before)),
         "what was written holds from their next start; the same line waits again, a plan with --resume"));
   }
 
@@ -154,9 +154,9 @@ class SwitchRun {
   /// None took the bitrate: perhaps none was restarted.
   Result<void> look_at_old() {
     const auto name = plan_->link->name();
-    auto error = drive_error(Errc::timeout, after_.front(),
-                             formatted("no drive answers at {}", bitrate_text(plan_->bitrate)),
-                             formatted("{} has it now; switch the drives off and on, then `scan`", name));
+    auto error = drive_error(
+        Errc::timeout, after_.front(), message("no drive answers at {}", bitrate_text(plan_->bitrate)),
+        message("{} has it now; switch the drives off and on, then `scan`", as_it_is(name)));
     std::uint8_t who = 0;
     const auto back = take_back(*session_, *plan_, [&] {
       const auto there = session::scan(*session_, before_);
@@ -169,20 +169,20 @@ class SwitchRun {
     const auto old = old_bitrate_text(*plan_);
     return fail(drive_error(
         Errc::negative, who,
-        formatted("still answers at {}: the restart did not put its new bitrate in force; {} is at {} again",
-                  old, name, old),
+        message("still answers at {}: the restart did not put its new bitrate in force; {} is at {} again",
+                old, as_it_is(name), old),
         over_bus_ ? "add --wait 5min: it asks for switching off and on" : "switch the drives off and on"));
   }
 
   Error left_alone(Error error) const {
-    error.message = formatted("the drives start at {} now, and {} could not follow: {}",
-                              bitrate_text(plan_->bitrate), plan_->link->name(), error.message);
+    error.message = message("the drives start at {} now, and {} could not follow: {}",
+                            bitrate_text(plan_->bitrate), as_it_is(plan_->link->name()), error.message);
     return error;
   }
 
   Error somewhere(Error error) const {
-    error.message = formatted("{} is at {} now; where the drives are was not seen: {}", plan_->link->name(),
-                              bitrate_text(plan_->bitrate), error.message);
+    error.message = message("{} is at {} now; where the drives are was not seen: {}",
+                            as_it_is(plan_->link->name()), bitrate_text(plan_->bitrate), error.message);
     if (error.hint.empty()) error.hint = "`scan` shows who answers";
     return error;
   }
@@ -246,7 +246,7 @@ std::string switch_commands(const BitrateSwitch& plan) {
 void tell_bitrate_by_hand(show::Desk& desk, const BitrateSwitch& plan,
                           std::span<const AddressChange> changes) {
   if (plan.link != nullptr && !plan.why_not.empty())
-    desk.notices.push_back(formatted("{} is left alone: {}", plan.link->name(), plan.why_not));
+    desk.notices.push_back(message("{} is left alone: {}", as_it_is(plan.link->name()), plan.why_not));
   for (const auto& line : bitrate_steps(desk.session->url(), plan.bitrate, family_of(changes)))
     desk.notices.push_back(line);
 }

@@ -37,20 +37,21 @@ Result<drive::Meaning> learn_size(show::Desk& desk, std::uint8_t node, const dri
     auto error = bytes.error();
     error.message = "the object's size is not known, and reading it failed: " + error.message;
     const bool absent = error.abort_code == canopen::sdo_abort::kNoObject;
-    error.hint = desk.profile == nullptr ? "give the type: --type i32, or the drive family: -d FAMILY"
-                 : absent ? formatted("`objects -d {}` lists the objects it has", desk.profile->family)
-                          : std::string("say the type: --type i32");
+    error.hint =
+        desk.profile == nullptr ? Message("give the type: --type i32, or the drive family: -d FAMILY")
+        : absent ? message("`objects -d {}` lists the objects it has", as_it_is(desk.profile->family))
+                 : Message("say the type: --type i32");
     return fail(std::move(error));
   }
   auto learned = learned_meaning(node, target, meaning, *bytes);
   if (!learned)
     return fail(
         Errc::negative,
-        formatted("the object has {} bytes, which does not fit {}", bytes->size(), od::name(meaning.type)),
+        message("the object has {} bytes, which does not fit {}", bytes->size(), od::name(meaning.type)),
         "say the type: --type i32");
   if (learned->type != meaning.type || !meaning.type_known)
-    desk.notices.push_back(formatted("node {}, object {}: type taken as {} from its length", node,
-                                     to_string(target.address), od::name(learned->type)));
+    desk.notices.push_back(message("node {}, object {}: type taken as {} from its length", node_name(node),
+                                   to_string(target.address), od::name(learned->type)));
   return *learned;
 }
 
@@ -71,9 +72,9 @@ void warn_of_gear(show::Desk& desk, std::uint8_t node, drive::Measure measure) {
     }
   if (ids.empty()) return;
   const auto names = fmt::to_string(fmt::join(ids, ", "));
-  const auto notice = formatted(
-      "node {}: the unit is converted by {}, valid only if the drive was restarted after they changed", node,
-      names);
+  const auto notice = message(
+      "node {}: the unit is converted by {}, valid only if the drive was restarted after they changed",
+      node_name(node), as_it_is(names));
   if (std::find(desk.notices.begin(), desk.notices.end(), notice) == desk.notices.end())
     desk.notices.push_back(notice);
 }
@@ -103,12 +104,11 @@ Result<void> prove_unit(const session::DriveUnits& own, const drive::Target& tar
                         std::string_view text) {
   if (own.unanswered()) return fail(*own.unanswered());
   if (!own.proves(target))
-    return fail(
-        Errc::usage,
-        formatted("'{}': the unit of this object is not known: neither the drive's data nor the drive "
-                  "(60A8h, 60A9h, 60AAh) states it",
-                  text),
-        "write the plain number that the drive takes; its manual gives the unit");
+    return fail(Errc::usage,
+                message("'{}': the unit of this object is not known: neither the drive's data nor the drive "
+                        "(60A8h, 60A9h, 60AAh) states it",
+                        as_it_is(text)),
+                "write the plain number that the drive takes; its manual gives the unit");
   own.apply(target, meaning);
   return {};
 }
@@ -125,16 +125,17 @@ bool is_unknown(const drive::Profile* profile, const drive::Target& target) {
 Result<drive::Meaning> writable_meaning(const drive::Profile* profile, std::uint8_t node,
                                         const drive::Target& target, std::optional<od::DataType> type) {
   auto meaning = drive::meaning(target, node);
-  const auto refused = [&](const std::string& why, std::string hint) {
-    return fail(show::located(make_error(Errc::usage, why, std::move(hint)), node, target.address));
+  const auto refused = [&](Message why, Message hint) {
+    return fail(
+        show::located(make_error(Errc::usage, std::move(why), std::move(hint)), node, target.address));
   };
   if (!od::writable(meaning.access) && is_unknown(profile, target))
     return refused(
-        formatted("{} is not known to be writable: `eds learn` cannot see that", target.in_sentence()),
-        formatted("where the manual says so, change its AccessType to rw in {}",
-                  profile->data_sheet.string()));
+        message("{} is not known to be writable: `eds learn` cannot see that", target.in_sentence()),
+        message("where the manual says so, change its AccessType to rw in {}",
+                as_it_is(profile->data_sheet.string())));
   if (!od::writable(meaning.access))
-    return refused(formatted("{} is read-only", target.in_sentence()),
+    return refused(message("{} is read-only", target.in_sentence()),
                    "`read` shows its value; servoctl cannot set it");
   if (type) meaning.type = *type;
   return meaning;
@@ -171,7 +172,7 @@ Error with_password_hint(const show::Desk& desk, const Change& change, const Wri
   const auto* password = desk.profile->parameter(store.unlock);
   const bool vendor_object = change.target.address.index >= 0x2000 && change.target.address.index < 0x6000;
   if (password == nullptr || !password->object || !store.unlock_open || !vendor_object) return error;
-  error.hint = formatted("it may be locked by {}: add --unlock", password->id);
+  error.hint = message("it may be locked by {}: add --unlock", password->id);
   return error;
 }
 
@@ -324,8 +325,8 @@ Result<Value> write_changes(show::Desk& desk, std::span<const Change> wanted, co
     if (!written[i]) desk.errors.push_back(with_password_hint(desk, changes[i], options, written[i].error()));
     if (written[i] && written[i]->answer_lost)
       desk.notices.push_back(
-          formatted("node {}, object {}: the answer to the write was lost; the value read back is correct",
-                    changes[i].node, to_string(changes[i].target.address)));
+          message("node {}, object {}: the answer to the write was lost; the value read back is correct",
+                  node_name(changes[i].node), to_string(changes[i].target.address)));
   }
   return table;
 }

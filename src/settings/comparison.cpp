@@ -65,6 +65,16 @@ std::string value_text(const drive::Profile* profile, const Side& side, ObjectAd
   return show(profile, side, object, chinese).text;
 }
 
+Message title_in_message(std::string_view title) {
+  if (title == "factory") return "factory";
+  return as_it_is(title);
+}
+
+Message title_in_message(const Side& side) {
+  if (side.title == formatted("node {}", side.node)) return message("node {}", node_name(side.node));
+  return title_in_message(std::string_view(side.title));
+}
+
 Side side_of(const Backup& backup, std::string title) {
   Side out{std::move(title), backup.identity.node, {}};
   for (const auto& entry : backup.entries)
@@ -88,8 +98,8 @@ void leave_unreachable(show::Desk& desk, const drive::Profile* profile, Side& si
   const auto left = std::erase_if(
       side.values, [&](const auto& value) { return !profile->rules.modbus.register_of(value.first); });
   if (left > 0)
-    desk.notices.push_back(
-        formatted("{} values of {} have no Modbus register: they are not compared", left, side.title));
+    desk.notices.push_back(message("{} values of {} have no Modbus register: they are not compared", left,
+                                   title_in_message(side)));
 }
 
 bool is_address(const drive::Profile* profile, ObjectAddress object) {
@@ -159,8 +169,8 @@ Comparison compare(const drive::Profile* profile, const Side& a, const Side& b, 
 }
 
 Error differences_error(const Comparison& comparison, const Side& a, const Side& b) {
-  return make_error(Errc::negative, formatted("{} of {} values differ between {} and {}",
-                                              comparison.different, comparison.compared, a.title, b.title));
+  return make_error(Errc::negative, message("{} of {} values differ between {} and {}", comparison.different,
+                                            comparison.compared, title_in_message(a), title_in_message(b)));
 }
 
 }  // namespace servoctl::settings

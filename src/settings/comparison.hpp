@@ -2,6 +2,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "report/value.hpp"
@@ -22,6 +23,10 @@ std::string value_text(const drive::Profile* profile, const Side& side, ObjectAd
 
 /// The values of a backup; what it left out is not compared.
 Side side_of(const Backup& backup, std::string title);
+
+/// A title in a message: `factory` is a word of the program, `node 3` is the node, everything else a name.
+Message title_in_message(std::string_view title);
+Message title_in_message(const Side& side);
 
 /// The factory values the family's data knows, for this node.
 Side factory_side(const drive::Profile& profile, std::uint8_t node);

@@ -59,8 +59,8 @@ class DictionaryReader {
     const auto tell = [&](const char* what, std::uint32_t said, const Result<Bytes>& answer) {
       if (said == 0 || !answer || load_le(*answer) == said) return;
       desk_->notices.push_back(
-          formatted("the file is of {} 0x{:08X}, node {} says 0x{:08X}: it may be of another drive", what,
-                    said, node_, load_le(*answer)));
+          message("the file is of {} 0x{:08X}, node {} says 0x{:08X}: it may be of another drive", what, said,
+                  node_name(node_), load_le(*answer)));
     };
     tell("vendor", file_->device.vendor_number, (*answers)[1]);
     tell("product code", file_->device.product_number, (*answers)[2]);
@@ -100,7 +100,8 @@ class DictionaryReader {
     if (answers_without_size()) {
       judge_.doubt_sizes();
       desk_->notices.push_back(
-          formatted("node {} answers every read with four bytes: sizes below that were not compared", node_));
+          message("node {} answers every read with four bytes: sizes below that were not compared",
+                  node_name(node_)));
     }
     for (std::size_t i = 0; i < listed_.size(); ++i)
       judge_.judge(*listed_[i].object, *listed_[i].entry, answers_[i]);
@@ -130,14 +131,14 @@ class DictionaryReader {
       }
       if (described.error().code == Errc::interrupted || described.error().code == Errc::bus)
         return fail(described.error());
-      desk_->notices.push_back(
-          formatted("node {} does not describe its objects: types and access were not compared", node_));
+      desk_->notices.push_back(message(
+          "node {} does not describe its objects: types and access were not compared", node_name(node_)));
     }
     if (session_->wary_of(node_) != nullptr) {
-      desk_->notices.push_back(formatted(
+      desk_->notices.push_back(message(
           "node {} raises an alarm if it is asked for an object that it does not have: it was asked only for "
           "those of the file",
-          node_));
+          node_name(node_)));
       return {};
     }
     if (const auto may = may_be_probed(); !may || !*may) return may.map([](bool) {});
@@ -151,10 +152,10 @@ class DictionaryReader {
   void tell_enabled() {
     desk_->notices.push_back(
         out_.probed == 0
-            ? formatted("node {} is enabled: it was not asked for objects that the file does not list", node_)
-            : formatted(
-                  "node {} is enabled now: it was asked for no more objects that the file does not list",
-                  node_));
+            ? message("node {} is enabled: it was not asked for objects that the file does not list",
+                      node_name(node_))
+            : message("node {} is enabled now: it was asked for no more objects that the file does not list",
+                      node_name(node_)));
   }
 
   /// Not a drive that is enabled, nor one that answers reads of any object: then nothing tells which it has.
@@ -171,8 +172,8 @@ class DictionaryReader {
     const bool all = !answers->empty() && std::all_of(answers->begin(), answers->end(),
                                                       [](const auto& answer) { return answer.has_value(); });
     if (all)
-      desk_->notices.push_back(
-          formatted("node {} answers reads of any object: it was asked only for those of the file", node_));
+      desk_->notices.push_back(message(
+          "node {} answers reads of any object: it was asked only for those of the file", node_name(node_)));
     return !all;
   }
 

@@ -110,16 +110,17 @@ Result<Value> compare_data_sheets(show::Desk& desk, const BackupSource& a, const
   if (!right) return fail(right.error());
   for (const auto& [source, file] : {std::pair(&a, &*left), std::pair(&b, &*right)})
     if (file->error_count() > 0)
-      desk.notices.push_back(formatted("{0}: {1} errors; `eds check {0}` lists what is not compared",
-                                       source->file, file->error_count()));
+      desk.notices.push_back(message("{0}: {1} errors; `eds check {0}` lists what is not compared",
+                                     as_it_is(source->file), file->error_count()));
   Comparer comparer(a.file, b.file);
   const auto all = addresses(left->dictionary, right->dictionary);
   for (const auto address : all)
     comparer.compare(address, left->dictionary.find(address), right->dictionary.find(address));
   const auto different = comparer.different();
   if (different > 0) {
-    desk.errors.push_back(make_error(Errc::negative, formatted("{} of {} entries differ between {} and {}",
-                                                               different, all.size(), a.file, b.file)));
+    desk.errors.push_back(
+        make_error(Errc::negative, message("{} of {} entries differ between {} and {}", different, all.size(),
+                                           as_it_is(a.file), as_it_is(b.file))));
   }
   auto table = comparer.take();
   return Value(report::Record{

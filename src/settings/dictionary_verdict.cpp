@@ -103,7 +103,7 @@ report::TestResult dictionary_test(std::uint8_t node, const Error& error) {
                           .name = "compared",
                           .verdict = report::Verdict::failed,
                           .relation = {},
-                          .note = error.message});
+                          .note = error.message.text()});
   return out;
 }
 
@@ -111,7 +111,8 @@ report::Record dictionary_record(show::Desk& desk, const std::string& file, cons
   const auto differences = check.findings.size();
   if (differences > 0)
     desk.errors.push_back(drive_error(
-        Errc::negative, check.node, formatted("differences between {} and the drive: {}", file, differences),
+        Errc::negative, check.node,
+        message("differences between {} and the drive: {}", as_it_is(file), differences),
         "the file is of another drive or firmware, or wrong in these entries: correct it before you use it with -d"));
   return {{"node", check.node},
           {"file", file},

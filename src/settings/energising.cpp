@@ -34,12 +34,12 @@ Result<void> check_power(const show::Desk& desk, std::uint8_t node, ObjectAddres
   if (may_be_power(desk.profile, object, data))
     return fail(drive_error(
         Errc::refused, node, object,
-        formatted("without its family it is not known whether this energises the motor, and {}", no_power),
+        message("without its family it is not known whether this energises the motor, and {}", no_power),
         "name the family: -d FAMILY"));
   if (drive::power_parameter(desk.profile, object, data) == nullptr) return {};
   return fail(drive_error(
       Errc::refused, node, object,
-      formatted("this energises the motor, or sets it in motion, without the controlword, and {}", no_power),
+      message("this energises the motor, or sets it in motion, without the controlword, and {}", no_power),
       std::string(kOtherWay)));
 }
 
@@ -57,10 +57,10 @@ std::vector<std::pair<ObjectAddress, const drive::PowerParameter*>> power_values
 }
 
 void tell_power(show::Desk& desk, std::uint8_t node, const drive::PowerParameter& parameter) {
-  desk.notices.push_back(formatted(
+  desk.notices.push_back(message(
       "node {}: its motor may get power or move without the controlword, and servoctl neither supervises nor "
       "stops it: `param set {}={} -n {}`",
-      node, parameter.end, parameter.value, node));
+      node_name(node), as_it_is(parameter.end), as_it_is(parameter.value), node_name(node)));
 }
 
 }  // namespace
@@ -103,10 +103,9 @@ Result<void> confirm_changes(show::Desk& desk, std::span<const Change> changes) 
   const auto no_power = desk.session->network().why_no_power();
   for (const auto& change : changes) {
     if (!no_power.empty() && enables(change))
-      return fail(
-          show::located(make_error(Errc::refused, formatted("this enables the drive, and {}", no_power),
-                                   std::string(kOtherWay)),
-                        change.node, change.target.address));
+      return fail(show::located(make_error(Errc::refused, message("this enables the drive, and {}", no_power),
+                                           std::string(kOtherWay)),
+                                change.node, change.target.address));
     if (const auto possible = check_power(desk, change.node, change.target.address, change.data); !possible)
       return possible;
   }

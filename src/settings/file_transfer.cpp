@@ -65,22 +65,21 @@ Result<Change> change_from_file(const drive::Profile* profile, std::uint8_t node
                                 const std::filesystem::path& file) {
   const auto meaning = drive::meaning(target, node);
   if (!od::writable(meaning.access))
-    return fail(Errc::usage, formatted("{} is read-only", target.in_sentence()),
-                "it can be read, not written");
+    return fail(Errc::usage, message("{} is read-only", target.in_sentence()), "it can be read, not written");
   const auto content = read_file(file, canopen::kMaxSdoDownload);
   if (!content) return fail(content.error());
   const auto size = meaning.type_known ? od::size_of(meaning.type) : std::nullopt;
   if (size && content->size() != *size)
-    return fail(Errc::usage, formatted("{} takes {} bytes, {} has {}", target.in_sentence(), *size,
-                                       file.string(), content->size()));
+    return fail(Errc::usage, message("{} takes {} bytes, {} has {}", target.in_sentence(), *size,
+                                     as_it_is(file.string()), content->size()));
   Bytes data(content->begin(), content->end());
   const auto value = size ? od::decode(meaning.type, data) : Result<od::Value>(od::Value(std::uint64_t{0}));
   if (value && !od::is_number(meaning.encoding, *value))
-    return fail(Errc::usage, formatted("{}: the bits in {} are those of infinity or of no number (NaN)",
-                                       target.in_sentence(), file.string()));
+    return fail(Errc::usage, message("{}: the bits in {} are those of infinity or of no number (NaN)",
+                                     target.in_sentence(), as_it_is(file.string())));
   if (const auto free = session::check_cob_id(profile, target.address, data, node); !free) {
     auto error = free.error();
-    error.message = formatted("{}: {}", target.in_sentence(), error.message);
+    error.message = message("{}: {}", target.in_sentence(), error.message);
     return fail(std::move(error));
   }
   return Change{node, target, size ? meaning.type : od::DataType::domain, std::move(data)};

@@ -33,25 +33,26 @@ Result<void> hold_against_producer(show::Desk& desk, std::uint8_t node, const He
   const auto period = period_of(*desk.session, watch.node);
   if (!period) {
     desk.notices.push_back(
-        formatted("node {}: node {} does not tell its heartbeat period: make sure that it is well below {}",
-                  node, watch.node, to_string(watch.time)));
+        message("node {}: node {} does not tell its heartbeat period: make sure that it is well below {}",
+                node_name(node), node_name(watch.node), to_string(watch.time)));
     return {};
   }
   if (*period == Duration::zero()) {
     desk.notices.push_back(
-        formatted("node {}: node {} sends no heartbeat yet; it is watched from its first one on "
-                  "(`heartbeat set 100ms -n {}`)",
-                  node, watch.node, watch.node));
+        message("node {}: node {} sends no heartbeat yet; it is watched from its first one on "
+                "(`heartbeat set 100ms -n {}`)",
+                node_name(node), node_name(watch.node), node_name(watch.node)));
     return {};
   }
   if (watch.time <= *period)
     return fail(drive_error(Errc::refused, node, {objects::kConsumerHeartbeatIndex, 0},
-                            formatted("node {} sends a heartbeat every {}: {} is too short for it",
-                                      watch.node, to_string(*period), to_string(watch.time)),
+                            message("node {} sends a heartbeat every {}: {} is too short for it",
+                                    node_name(watch.node), to_string(*period), to_string(watch.time)),
                             "one and a half periods at least"));
   if (2 * watch.time < 3 * *period)
-    desk.notices.push_back(formatted("node {}: {} is less than one and a half periods of node {} ({})", node,
-                                     to_string(watch.time), watch.node, to_string(*period)));
+    desk.notices.push_back(message("node {}: {} is less than one and a half periods of node {} ({})",
+                                   node_name(node), to_string(watch.time), node_name(watch.node),
+                                   to_string(*period)));
   return {};
 }
 
@@ -65,10 +66,10 @@ Result<void> check_watches(std::uint8_t node, std::span<const HeartbeatWatch> wa
   std::set<std::uint8_t> seen;
   for (const auto& watch : watches) {
     if (watch.node == node)
-      return fail(Errc::usage, formatted("node {} cannot watch its own heartbeat", node),
+      return fail(Errc::usage, message("node {} cannot watch its own heartbeat", node_name(node)),
                   "name another node");
     if (!seen.insert(watch.node).second)
-      return fail(Errc::usage, formatted("node {} appears twice", watch.node), "one time a node");
+      return fail(Errc::usage, message("node {} appears twice", node_name(watch.node)), "one time a node");
   }
   return {};
 }
@@ -90,7 +91,7 @@ Result<Duration> parse_heartbeat_time(std::string_view text) {
   const auto time = read_duration(text);
   if (!time) return time;
   if (*time > kLongest || *time % std::chrono::milliseconds(1) != Duration::zero())
-    return fail(Errc::usage, formatted("'{}' is no time of a heartbeat", text),
+    return fail(Errc::usage, message("'{}' is no time of a heartbeat", as_it_is(text)),
                 "whole milliseconds, up to 65535ms; off for none");
   return time;
 }
@@ -100,7 +101,8 @@ Result<HeartbeatWatch> parse_heartbeat_watch(std::string_view text) {
   const auto number = equals == std::string_view::npos ? std::nullopt : parse_integer(text.substr(0, equals));
   const auto node = number ? number->as_unsigned() : std::nullopt;
   if (!node || *node < canopen::kFirstNode || *node > canopen::kLastNode)
-    return fail(Errc::usage, formatted("'{}' is not a node and a time", text), std::string(kWatchHint));
+    return fail(Errc::usage, message("'{}' is not a node and a time", as_it_is(text)),
+                std::string(kWatchHint));
   const auto time = parse_heartbeat_time(text.substr(equals + 1));
   if (!time) return fail(time.error());
   return HeartbeatWatch{static_cast<std::uint8_t>(*node), *time};
@@ -110,7 +112,7 @@ Result<Change> producer_change(show::Desk& desk, std::uint8_t node, Duration tim
   const auto object = objects::kProducerHeartbeat;
   const bool is_known = desk.profile != nullptr;
   if (is_known && desk.profile->dictionary.find(object) == nullptr)
-    return fail(Errc::usage, formatted("a {} has no 1017h: it sends no heartbeat", desk.profile->family),
+    return fail(Errc::usage, message("a {} has no 1017h: it sends no heartbeat", desk.profile->family),
                 "node guarding asks it instead: `nmt watch --guard 200ms`");
   const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(time).count();
   // Without a family the object is as CiA 301 has it.
@@ -126,7 +128,7 @@ Result<std::vector<Change>> consumer_changes(show::Desk& desk, std::uint8_t node
   if (!now) return fail(now.error());
   if (now->entries.empty())
     return fail(drive_error(Errc::usage, node, {objects::kConsumerHeartbeatIndex, 0},
-                            formatted("a {} watches no heartbeat: it has no 1016h", desk.profile->family),
+                            message("a {} watches no heartbeat: it has no 1016h", desk.profile->family),
                             "`watchdog` shows what it does without its master"));
   auto entries = now->entries;
   std::vector<Change> out;
@@ -134,12 +136,13 @@ Result<std::vector<Change>> consumer_changes(show::Desk& desk, std::uint8_t node
     auto* entry = entry_for(entries, watch.node);
     const bool ends = watch.time == Duration::zero();
     if (ends && (entry == nullptr || entry->node != watch.node)) {
-      desk.notices.push_back(formatted("node {}: it does not watch node {}", node, watch.node));
+      desk.notices.push_back(
+          message("node {}: it does not watch node {}", node_name(node), node_name(watch.node)));
       continue;
     }
     if (entry == nullptr)
       return fail(drive_error(Errc::refused, node, {objects::kConsumerHeartbeatIndex, 0},
-                              formatted("all {} entries are taken", entries.size()),
+                              message("all {} entries are taken", entries.size()),
                               "`heartbeat show` lists them; NODE=off frees one"));
     if (!ends)
       if (const auto fits = hold_against_producer(desk, node, watch); !fits) return fail(fits.error());

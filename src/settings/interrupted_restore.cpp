@@ -20,10 +20,11 @@ class TakingUp {
     const auto found = read_journal(*desk_, before_->journal());
     if (!found) return fail(found.error());
     if (*found && !options_->resume)
-      return fail(Errc::refused,
-                  formatted("a restore of {} to node {} was interrupted", attempt_->title, node_),
-                  formatted("--resume continues it; `restore {} -n {}` restores the old values",
-                            before_->path().string(), node_));
+      return fail(
+          Errc::refused,
+          message("a restore of {} to node {} was interrupted", as_it_is(attempt_->title), node_name(node_)),
+          message("--resume continues it; `restore {} -n {}` restores the old values",
+                  as_it_is(before_->path().string()), node_name(node_)));
     if (!*found && options_->resume) return fail(nothing_to_resume(*before_, attempt_->title, node_));
     if (options_->resume) return resume(**found);
     return undo();
@@ -33,9 +34,10 @@ class TakingUp {
   Result<RestoreJournal> resume(const RestoreJournal& found) {
     if (found.checksum != checksum(*attempt_->backup) || found.node != node_)
       return fail(Errc::refused,
-                  formatted("{} is not the file being restored to node {}", attempt_->title, node_),
-                  formatted("resuming needs the same values; `restore {} -n {}` restores the old ones",
-                            before_->path().string(), node_));
+                  message("{} is not the file being restored to node {}", as_it_is(attempt_->title),
+                          node_name(node_)),
+                  message("resuming needs the same values; `restore {} -n {}` restores the old ones",
+                          as_it_is(before_->path().string()), node_name(node_)));
     options_->choice = {.with_address = found.with_address,
                         .force = found.force,
                         .skip_invalid = options_->choice.skip_invalid};
@@ -55,10 +57,10 @@ class TakingUp {
     // What went to the flash has to go there again, but for trials: those were in the RAM alone.
     const bool keeps_trials = keeps(**undone) && worked_in_ram(*desk_->profile, **undone);
     if (keeps_trials && !options_->keep)
-      desk_->notices.push_back(formatted(
+      desk_->notices.push_back(message(
           "node {}: it worked in RAM when the restore that is undone began, so the old values go to its RAM; "
           "its flash may hold new ones: --keep writes the old ones there, too",
-          node_));
+          node_name(node_)));
     options_->keep = options_->keep || (keeps(**undone) && !keeps_trials);
     options_->unlock = options_->unlock || (*undone)->unlock;
     return **undone;
@@ -70,13 +72,13 @@ class TakingUp {
     if (origin.kind == Origin::Kind::other)
       return fail(
           drive_error(Errc::refused, node_,
-                      formatted("{} has the old values of another drive, whose restore was interrupted: {}",
-                                attempt_->title, origin.why),
+                      message("{} has the old values of another drive, whose restore was interrupted: {}",
+                              as_it_is(attempt_->title), origin.why),
                       "--force restores them to this one; the interrupted restore stays as it is"));
     return fail(drive_error(
         Errc::refused, node_,
-        formatted("{} has the old values of the drive on {}, and nothing tells whether this is that drive",
-                  attempt_->title, origin.bus),
+        message("{} has the old values of the drive on {}, and nothing tells whether this is that drive",
+                as_it_is(attempt_->title), as_it_is(origin.bus)),
         "--force restores them, where it is"));
   }
 
@@ -104,14 +106,16 @@ Error nothing_to_resume(const BeforeFile& before, const std::string& title, std:
   const auto other =
       std::find_if(others.begin(), others.end(), [](const auto& one) { return one.has_journal; });
   if (other == others.end())
-    return make_error(Errc::usage,
-                      formatted("there is nothing to resume: {} does not exist", before.journal().string()),
-                      "leave --resume out");
+    return make_error(
+        Errc::usage,
+        message("there is nothing to resume: {} does not exist", as_it_is(before.journal().string())),
+        "leave --resume out");
   return drive_error(
       Errc::refused, node,
-      formatted("the restore of {} that was interrupted was of another drive: {}", title, other->origin.why),
-      formatted("leave --resume out to begin anew with this one; the old values of the other stay in {}",
-                other->path.string()));
+      message("the restore of {} that was interrupted was of another drive: {}", as_it_is(title),
+              other->origin.why),
+      message("leave --resume out to begin anew with this one; the old values of the other stay in {}",
+              as_it_is(other->path.string())));
 }
 
 }  // namespace servoctl::settings

@@ -29,10 +29,10 @@ bool tell_kept_address(show::Desk& desk, const Backup& backup, const std::string
     differs = true;
     const auto target = drive::target_at(desk.profile, object);
     desk.notices.push_back(
-        formatted("node {}: {} stays {}; {} has {}, which only `restore --with-address` writes", node,
-                  desk.chinese ? target.label_zh() : target.label(),
-                  value_text(desk.profile, drive, object, desk.chinese), title,
-                  value_text(desk.profile, wanted, object, desk.chinese)));
+        message("node {}: {} stays {}; {} has {}, which only `restore --with-address` writes",
+                node_name(node), desk.chinese ? target.label_zh() : target.label(),
+                value_text(desk.profile, drive, object, desk.chinese), as_it_is(title),
+                value_text(desk.profile, wanted, object, desk.chinese)));
   }
   return differs;
 }

@@ -30,11 +30,11 @@ namespace {
 Result<void> check_target(const std::filesystem::path& file) {
   const auto word = file.string();
   if (word.empty() || word == "-")
-    return fail(Errc::usage, formatted("'{}' names no file", word), "name the file: -o drive.eds");
+    return fail(Errc::usage, message("'{}' names no file", as_it_is(word)), "name the file: -o drive.eds");
   std::error_code ignored;
   if (const auto status = std::filesystem::status(file, ignored);
       std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-    return fail(Errc::usage, formatted("{} is no regular file", word), "name the file: -o drive.eds");
+    return fail(Errc::usage, message("{} is no regular file", as_it_is(word)), "name the file: -o drive.eds");
   if (const auto may = check_writable(file); !may) return may;
   return check_writable(scan_file(file));
 }
@@ -128,7 +128,7 @@ class Learning {
     if (difference.empty()) return {};
     return fail(drive_error(
         Errc::refused, node_,
-        formatted("it may be another drive than the one that was read: {}; no file is written", difference)));
+        message("it may be another drive than the one that was read: {}; no file is written", difference)));
   }
 
   Result<Learned> take() {
@@ -152,7 +152,7 @@ class Learning {
       return refused ? Result<std::optional<Learned>>(std::nullopt) : fail(online.error());
     }
     for (const auto& left : online->left_out)
-      desk_->notices.push_back(formatted("node {} does not describe {}", node_, left));
+      desk_->notices.push_back(message("node {} does not describe {}", node_name(node_), left));
     return std::optional(Learned{
         "description",
         written(online->sheet, {"Made by servoctl as the drive describes its objects (SDO information)."})});
@@ -164,7 +164,6 @@ class Learning {
                                  options_.ranges.empty() ? ranges_of_axes(statuswords_) : options_.ranges};
     const auto begun = resume_scan(*desk_, scan_file(file_), identity_, state);
     if (!begun) return fail(begun.error());
-    const bool resumed = *begun;
     session::ObjectScan scan(*session_, node_, *survey_, statuswords_, state);
     Result<void> kept;
     const auto done = scan.run([&] {
@@ -175,20 +174,21 @@ class Learning {
     });
     if (!done) {
       if (kept && state.done > 0)
-        desk_->notices.push_back(formatted("{} keeps {} of {} indexes: the same command goes on from there",
-                                           scan_file(file_).string(), state.done, state.indexes()));
+        desk_->notices.push_back(message("{} keeps {} of {} indexes: the same command goes on from there",
+                                         as_it_is(scan_file(file_).string()), state.done, state.indexes()));
       return fail(done.error());
     }
     if (const auto code = scan.lacking_code())
-      desk_->notices.push_back(formatted(
-          "node {} answers reads of objects that it does not have with abort {:08X}h", node_, *code));
+      desk_->notices.push_back(
+          message("node {} answers reads of objects that it does not have with abort {:08X}h",
+                  node_name(node_), *code));
     const auto unread = unread_text(state);
     if (state.entries.empty()) {
       remove_kept();
       return fail(drive_error(Errc::negative, node_,
                               unread.empty()
-                                  ? std::string("no object was found in these ranges")
-                                  : formatted("no object was found; indexes {} were not read", unread),
+                                  ? Message("no object was found in these ranges")
+                                  : message("no object was found; indexes {} were not read", unread),
                               "--range names other indexes; `status` shows whether the drive is in a fault"));
     }
     desk_->notices.push_back(
@@ -196,7 +196,7 @@ class Learning {
         "or limits. A backup saves them as well; nothing writes them until the file says `rw`");
     auto text = text_of(state, unread);
     tell_alarms();
-    return Learned{"scan", std::move(text), ranges_text(state.ranges), resumed, state.refusals};
+    return Learned{"scan", std::move(text), ranges_text(state.ranges), *begun, state.refusals};
   }
 
   std::string text_of(const session::ScanState& state, const std::string& unread) {
@@ -213,8 +213,9 @@ class Learning {
 
   void tell_alarms() {
     if (session_->watch().alarms(node_) != alarms_)
-      desk_->notices.push_back(formatted(
-          "node {} sent EMCYs during the scan: it may be in fault now (`status`, `fault reset`)", node_));
+      desk_->notices.push_back(
+          message("node {} sent EMCYs during the scan: it may be in fault now (`status`, `fault reset`)",
+                  node_name(node_)));
   }
 
   Result<void> may_scan() {
@@ -222,11 +223,11 @@ class Learning {
     if (known == nullptr || options_.despite_alarms) return {};
     return fail(drive_error(
         Errc::refused, node_,
-        formatted("a drive of the family {} raises an alarm for each object that it does not have",
-                  known->family),
-        formatted("the objects are in the data of the family: `objects -d {}`; --despite-alarms scans "
-                  "nevertheless",
-                  known->family)));
+        message("a drive of the family {} raises an alarm for each object that it does not have",
+                as_it_is(known->family)),
+        message("the objects are in the data of the family: `objects -d {}`; --despite-alarms scans "
+                "nevertheless",
+                as_it_is(known->family))));
   }
 
   std::string written(const od::EdsFile& sheet, std::vector<std::string> comments) const {

@@ -31,11 +31,12 @@ constexpr Duration kLookFor = std::chrono::seconds(5);
 constexpr Duration kLookPause = std::chrono::seconds(1);
 
 /// What holds after one of several slaves did not do as the others.
-std::string not_activated(const LssRequest& request, std::string_view more) {
+Message not_activated(const LssRequest& request, const Message& more) {
   const bool stores = request.answer == LssService::store;
-  return formatted(
+  return message(
       "nothing was activated{}; {}",
-      stores ? ", but slaves that confirmed have stored it, and take it when they are switched on" : "",
+      stores ? Message(", but slaves that confirmed have stored it, and take it when they are switched on")
+             : Message(),
       more);
 }
 
@@ -50,13 +51,12 @@ Result<std::size_t> order_all(LssDialogue& lss, const LssRequest& request, std::
   const auto refused = std::find_if(answers->begin(), answers->end(),
                                     [&](const auto& answer) { return !asks && answer.error != 0; });
   if (refused != answers->end())
-    return fail(
-        Errc::negative,
-        formatted("an LSS slave of {} refuses: {}", answers->size(), canopen::lss_error_text(*refused)),
-        not_activated(request, "`lss inquire` shows what each slave is"));
+    return fail(Errc::negative,
+                message("an LSS slave of {} refuses: {}", answers->size(), canopen::lss_error_text(*refused)),
+                not_activated(request, "`lss inquire` shows what each slave is"));
   if (answers->size() < expected)
     return fail(Errc::negative,
-                formatted("of {} LSS slaves {} confirmed what was set", expected, answers->size()),
+                message("of {} LSS slaves {} confirmed what was set", expected, answers->size()),
                 not_activated(request, "one that does not support a request may leave it unanswered"));
   return answers->size();
 }
@@ -129,8 +129,8 @@ class LssBitrateRun {
     const auto set = take_to(*session_, *plan_, plan_->bitrate);
     if (!set)
       return fail(set.error().code,
-                  formatted("the LSS slaves are at {} now, and {} could not follow: {}",
-                            bitrate_text(plan_->bitrate), name, set.error().message),
+                  message("the LSS slaves are at {} now, and {} could not follow: {}",
+                          bitrate_text(plan_->bitrate), as_it_is(name), set.error().message),
                   set.error().hint);
     pause(*activated_ + 2 * delay + kTalkAgain);
     return {};
@@ -165,12 +165,12 @@ class LssBitrateRun {
     if (there == 0) return look_at_old();
     if (there < out_.slaves)
       return fail(
-          Errc::timeout, formatted("of {} LSS slaves {} answer at {}", out_.slaves, there, rate),
-          formatted("{} is at {} now; one that kept its bitrate disturbs the rest: switch it off, and on "
-                    "where it has stored the new one",
-                    name, rate));
-    desk_->notices.push_back(
-        formatted("{} went with them: {} (it was at {})", name, rate, session::settings_text(plan_->before)));
+          Errc::timeout, message("of {} LSS slaves {} answer at {}", out_.slaves, there, rate),
+          message("{} is at {} now; one that kept its bitrate disturbs the rest: switch it off, and on "
+                  "where it has stored the new one",
+                  as_it_is(name), rate));
+    desk_->notices.push_back(message("{} went with them: {} (it was at {})", as_it_is(name), rate,
+                                     session::settings_text(plan_->before)));
     return {};
   }
 
@@ -181,22 +181,22 @@ class LssBitrateRun {
     if (back && *back)
       return fail(
           Errc::negative,
-          formatted("LSS slaves still answer at {0}: the activation did not put {1} in force; {2} is at "
-                    "{0} again",
-                    old_bitrate_text(*plan_), rate, name),
+          message("LSS slaves still answer at {0}: the activation did not put {1} in force; {2} is at "
+                  "{0} again",
+                  old_bitrate_text(*plan_), rate, as_it_is(name)),
           change_->keep ? "what was stored holds when they are switched off and on: then `bus up` takes "
                           "the interface there"
                         : "one that does not support it may ignore it: --keep, and switch them off and on");
-    return fail(
-        Errc::timeout, formatted("no LSS slave answers at {}", rate),
-        back ? formatted("{} has it now; switch the drives off and on, then `lss inquire` or `scan`", name)
-             : std::string("`bus status` shows the interface"));
+    return fail(Errc::timeout, message("no LSS slave answers at {}", rate),
+                back ? message("{} has it now; switch the drives off and on, then `lss inquire` or `scan`",
+                               as_it_is(name))
+                     : Message("`bus status` shows the interface"));
   }
 
   Error not_looked_for(const Error& error) const {
     return make_error(error.code,
-                      formatted("{} is at {} now; whether the LSS slaves are was not seen: {}",
-                                plan_->link->name(), bitrate_text(plan_->bitrate), error.message),
+                      message("{} is at {} now; whether the LSS slaves are was not seen: {}",
+                              as_it_is(plan_->link->name()), bitrate_text(plan_->bitrate), error.message),
                       "`lss inquire` or `scan` shows who answers");
   }
 

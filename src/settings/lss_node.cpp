@@ -105,9 +105,9 @@ class LssNodeRun {
         session::restart_node(*session_, *slave_->node, drive::NmtRules::Restart::reset_communication);
     if (!sent) return fail_with("set; holds from its next start", sent.error());
     if (is_shared_)
-      desk_->notices.push_back(formatted(
+      desk_->notices.push_back(message(
           "node {}: the other drive of this node-ID was reset as well: its unstored PDOs, COB-IDs and heartbeats are lost",
-          *slave_->node));
+          node_name(*slave_->node)));
     return true;
   }
 
@@ -188,8 +188,8 @@ class LssNodeRun {
     fail_with(
         "set; has another node-ID",
         drive_error(Errc::protocol, node,
-                    formatted("it has the identity of the LSS slave that confirmed node-ID {}", change_->to),
-                    formatted("`lss set-node {} -n {}` tries again", change_->to, node)));
+                    message("it has the identity of the LSS slave that confirmed node-ID {}", change_->to),
+                    message("`lss set-node {} -n {}` tries again", change_->to, node_name(node))));
   }
 
   /// It has no SDO then, and not every slave answers the question for those without a node-ID.

@@ -19,13 +19,13 @@ bool take_own_size(show::Desk& desk, Change& change, Error& refusal) {
   meaning.type_known = true;
   const auto fitted = drive::as_answered(meaning, held->size());
   if (!fitting || fitted.type == change.type) {
-    refusal.hint = formatted("the object has {} bytes in this drive, not {}: the number does not fit",
-                             held->size(), change.data.size());
+    refusal.hint = message("the object has {} bytes in this drive, not {}: the number does not fit",
+                           held->size(), change.data.size());
     return false;
   }
-  desk.notices.push_back(formatted("node {}, object {}: it has {} bytes in this drive, not {}: written as {}",
-                                   change.node, to_string(change.target.address), held->size(),
-                                   change.data.size(), od::name(fitted.type)));
+  desk.notices.push_back(message("node {}, object {}: it has {} bytes in this drive, not {}: written as {}",
+                                 node_name(change.node), as_it_is(to_string(change.target.address)),
+                                 held->size(), change.data.size(), od::name(fitted.type)));
   change.data = *fitting;
   change.type = fitted.type;
   return true;

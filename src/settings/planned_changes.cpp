@@ -22,8 +22,8 @@ void tell_unchanged(show::Desk& desk, std::span<const Change> changes) {
   for (const auto& change : changes)
     if (change.unchanged)
       desk.notices.push_back(
-          formatted("node {}: {} is unchanged: the drive holds this value, and nothing is written",
-                    change.node, change.target.in_sentence()));
+          message("node {}: {} is unchanged: the drive holds this value, and nothing is written",
+                  node_name(change.node), change.target.in_sentence()));
 }
 
 }  // namespace

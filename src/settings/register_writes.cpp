@@ -38,7 +38,7 @@ Result<void> check_registers(const show::Desk& desk, std::span<const Change> cha
   const auto* line = desk.session->modbus();
   if (line == nullptr) return {};
   for (const auto& change : changes) {
-    const auto refused = [&](Errc code, std::string what, std::string hint) {
+    const auto refused = [&](Errc code, Message what, Message hint) {
       return fail(drive_error(code, change.node, change.target.address, std::move(what), std::move(hint)));
     };
     if (line->is_known(change.node) && !line->has_register(change.node, change.target.address))
@@ -46,7 +46,7 @@ Result<void> check_registers(const show::Desk& desk, std::span<const Change> cha
                      "nothing was written; `param list` shows what has one");
     if (change.data.size() != kBytesOfRegister)
       return refused(Errc::usage,
-                     formatted("{} bytes do not go into a register, which has 2", change.data.size()),
+                     message("{} bytes do not go into a register, which has 2", change.data.size()),
                      "nothing was written; leave --type out, or say u16 or i16");
     if (takes_its_address(desk, change))
       return refused(Errc::usage, "0 is the address of messages to all: it would answer nobody over Modbus",
@@ -75,10 +75,10 @@ void tell_not_at_rest(show::Desk& desk, std::span<const Change> changes,
     for (std::size_t i = 0; i < changes.size(); ++i)
       if (place == changes[i].target.address && load_le(changes[i].data) != 0 &&
           session::write_end(written[i], changes[i].target.address) != session::WriteEnd::not_written)
-        desk.notices.push_back(formatted(
+        desk.notices.push_back(message(
             "node {}: its motor may be energised and turn, and nothing stops it when servoctl or the cable is "
             "gone: `param set {}=0 -n {}`",
-            changes[i].node, name, changes[i].node));
+            node_name(changes[i].node), as_it_is(name), node_name(changes[i].node)));
   }
 }
 

@@ -23,12 +23,12 @@ Result<void> check_pdo(const drive::Profile& profile, const Pdo& present, const 
 
 }  // namespace
 
-tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, std::string_view what,
-                                           std::string hint) const {
+tl::unexpected<Error> RestoreTarget::unfit(Errc code, ObjectAddress object, const Message& what,
+                                           Message hint) const {
   const auto copy = copies_.find(object);
   const auto of = copy == copies_.end() ? "" : to_string(copy->second) + ": its stored copy ";
   const auto name = of + drive::target_at(desk_->profile, object).in_sentence();
-  auto error = fail(code, formatted("{}: {}: {}", place_of(object), name, what), std::move(hint)).value();
+  auto error = fail(code, message("{}: {}: {}", place_of(object), name, what), std::move(hint)).value();
   error.node = node_;
   error.object = object;
   return fail(std::move(error));

@@ -36,7 +36,7 @@ Error flash_error(const drive::Profile* profile, std::uint8_t node,
   if (in_flash.size() > kMostNamed) append(names, formatted("and {} more", in_flash.size() - kMostNamed));
   return drive_error(
       Errc::negative, node,
-      formatted("its flash was not put back: after power-off these may have other values: {}", names),
+      message("its flash was not put back: after power-off these may have other values: {}", names),
       "it worked in RAM, so what its flash held before is not known");
 }
 

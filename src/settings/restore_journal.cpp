@@ -27,7 +27,7 @@ constexpr std::uint64_t kJournalVersion = 2;  ///< 1 had no seal.
 constexpr std::string_view kKeys[] = {"servoctl_journal", "checksum", "node", "with_address", "force", "keep",
                                       "unlock",           "means",    "seal"};
 
-tl::unexpected<Error> no_journal(std::string message) {
+tl::unexpected<Error> no_journal(Message message) {
   return fail(Errc::file, std::move(message),
               "it belongs to an interrupted restore; delete it if that is not to be resumed");
 }
@@ -67,8 +67,8 @@ void refuse_other_keys(const Value& document, show::FieldReader& fields) {
 Result<RestoreJournal> parse_journal(const Value& document, const std::string& file) {
   show::FieldReader fields(document, file);
   if (const auto version = fields.number("servoctl_journal", true); version && *version != kJournalVersion)
-    return no_journal(
-        formatted("{}: its version {} is not that of this program ({})", file, *version, kJournalVersion));
+    return no_journal(message("{}: its version {} is not that of this program ({})", as_it_is(file), *version,
+                              kJournalVersion));
   RestoreJournal out;
   out.checksum = fields.text("checksum", true);
   const auto node = fields.number("node", true).value_or(0);
@@ -87,7 +87,7 @@ Result<RestoreJournal> parse_journal(const Value& document, const std::string& f
   if (fields.error()) return no_journal(*fields.error());
   if (seal != seal_of(out))
     return no_journal(
-        formatted("{}: its seal does not match: the file was changed after it was written", file));
+        message("{}: its seal does not match: the file was changed after it was written", as_it_is(file)));
   return out;
 }
 
@@ -96,8 +96,8 @@ Result<void> check_mean(const drive::Profile& profile, std::uint8_t node, Object
                         const Bytes& bytes) {
   const auto means = drive::means_of_writing(profile);
   if (std::none_of(means.begin(), means.end(), [&](const auto& mean) { return mean.first == object; }))
-    return fail(Errc::file, formatted("{} neither chooses a memory nor opens a lock of {}", to_string(object),
-                                      profile.family));
+    return fail(Errc::file, message("{} neither chooses a memory nor opens a lock of {}",
+                                    as_it_is(to_string(object)), as_it_is(profile.family)));
   const auto meaning = drive::fitted(drive::meaning(drive::target_at(&profile, object), node), bytes.size());
   const auto value = od::decode(meaning.type, bytes);
   if (!value) return fail(value.error());
@@ -111,8 +111,8 @@ Result<void> check_means(const drive::Profile& profile, const RestoreJournal& jo
     const bool twice = !seen.insert(object).second;
     const auto known = check_mean(profile, journal.node, object, bytes);
     if (twice || !known)
-      return no_journal(formatted("{}: {}: {}", file, to_string(object),
-                                  twice ? std::string("appears twice") : known.error().message));
+      return no_journal(message("{}: {}: {}", as_it_is(file), as_it_is(to_string(object)),
+                                twice ? std::string("appears twice") : known.error().message));
   }
   return {};
 }

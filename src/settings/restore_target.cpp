@@ -35,24 +35,27 @@ Result<void> RestoreTarget::check_identity() {
   const bool force = choice_.force;
   if (backup_->family != desk_->profile->family && !force)
     return fail(Errc::refused,
-                formatted("{} is for {}, not for {}", title_, backup_->family, desk_->profile->family),
+                message("{} is for {}, not for {}", as_it_is(title_), as_it_is(backup_->family),
+                        as_it_is(desk_->profile->family)),
                 "--force restores what fits anyway");
   const std::uint8_t nodes[] = {node_};
   const auto found = session::scan(*desk_->session, nodes);
   if (!found) return fail(found.error());
   if (found->empty())
-    return fail(Errc::timeout, formatted("node {} does not answer", node_), "`scan` shows who does");
+    return fail(Errc::timeout, message("node {} does not answer", node_name(node_)), "`scan` shows who does");
   identity_ = found->front();
   const auto& drive = identity_;
   if (const auto what = show::other_kind(backup_->identity, drive); !what.empty() && !force)
-    return fail(Errc::refused, formatted("node {} is not the drive of {}: {} differs", node_, title_, what),
-                "--force restores what fits anyway");
+    return fail(
+        Errc::refused,
+        message("node {} is not the drive of {}: {} differs", node_name(node_), as_it_is(title_), what),
+        "--force restores what fits anyway");
   const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
   if (says_firmware && !drive.by_registers &&
       (backup_->identity.revision != drive.revision ||
        backup_->identity.software_version != drive.software_version))
-    desk_->notices.push_back(
-        formatted("node {}: its firmware differs from the backup's: check the important values", node_));
+    desk_->notices.push_back(message(
+        "node {}: its firmware differs from the backup's: check the important values", node_name(node_)));
   return {};
 }
 
@@ -64,7 +67,8 @@ Result<void> RestoreTarget::check_standstill() const {
   if (!word && word.error().code != Errc::sdo_abort) return fail(word.error());
   if (!word || !drive::is_energised(drive::decode_state(static_cast<std::uint16_t>(load_le(*word)))))
     return {};
-  return fail(Errc::refused, formatted("node {} is energised: its settings cannot be changed now", node_),
+  return fail(Errc::refused,
+              message("node {} is energised: its settings cannot be changed now", node_name(node_)),
               "`disable` de-energises it; make sure that the load is held");
 }
 
@@ -77,9 +81,9 @@ Result<void> RestoreTarget::check_at_rest() const {
     if (!value) return fail(value.error());
     if (load_le(*value) == 0) continue;
     return fail(drive_error(Errc::refused, node_, *place,
-                            formatted("{} is not 0: it may be enabled, or its motor turns; its settings "
-                                      "cannot be changed now",
-                                      name),
+                            message("{} is not 0: it may be enabled, or its motor turns; its settings "
+                                    "cannot be changed now",
+                                    name),
                             "stop and disable it first; make sure that the load is held"));
   }
   return {};
@@ -87,8 +91,8 @@ Result<void> RestoreTarget::check_at_rest() const {
 
 /// Only what this drive's own data calls a setting is ever written, whatever the file says.
 Result<void> RestoreTarget::leave_out(const Backup::Entry& entry, std::string_view reason) {
-  const auto what = formatted("{}: {} is not a setting of this drive: {}", place_of(entry.object),
-                              to_string(entry.object), reason);
+  const auto what = message("{}: {} is not a setting of this drive: {}", place_of(entry.object),
+                            to_string(entry.object), reason);
   if (!choice_.force) return fail(Errc::refused, what, "nothing was written; --force restores the rest");
   desk_->notices.push_back(what + "; it is left out");
   return {};
@@ -101,8 +105,8 @@ bool RestoreTarget::is_out_of_reach(const Backup::Entry& entry) {
   unreachable_ += reached ? 0U : 1U;
   if (!reached || !is_target(*desk_->profile, entry.object)) return !reached;
   desk_->notices.push_back(
-      formatted("node {}: {} stays as it is: a drive that an input enables would follow it at once", node_,
-                drive::target_at(desk_->profile, entry.object).in_sentence()));
+      message("node {}: {} stays as it is: a drive that an input enables would follow it at once",
+              node_name(node_), drive::target_at(desk_->profile, entry.object).in_sentence()));
   return true;
 }
 
@@ -151,9 +155,8 @@ Result<void> RestoreTarget::choose_values() {
 
 void RestoreTarget::tell_kept() const {
   if (unreachable_ > 0)
-    desk_->notices.push_back(
-        formatted("node {}: {} values of {} have no Modbus register and stay as they are", node_,
-                  unreachable_, title_));
+    desk_->notices.push_back(message("node {}: {} values of {} have no Modbus register and stay as they are",
+                                     node_name(node_), unreachable_, as_it_is(title_)));
 }
 
 /// What the drive takes from its parameters at its start has to stand there too, unless the file says what
@@ -190,8 +193,8 @@ Result<void> RestoreTarget::read_present() {
     }
     if (!choice_.force)
       return fail(Errc::negative,
-                  formatted("{}: {}: {}", place_of(entry.object), to_string(entry.object),
-                            entry.bytes ? "it has another length in the drive" : entry.left_out),
+                  message("{}: {}: {}", place_of(entry.object), to_string(entry.object),
+                          entry.bytes ? "it has another length in the drive" : entry.left_out),
                   "nothing was written; --force restores the rest");
     wanted_.erase(entry.object);
   }
@@ -218,14 +221,14 @@ Result<void> RestoreTarget::compare_undecided() {
                      (all > kMostListed ? formatted(" and {} more", all - kMostListed) : std::string());
   left_.push_back(drive_error(
       Errc::negative, node_,
-      all == 1 ? formatted("{} differs from {} and is left as it is: it is not known to be writable", names,
-                           title_)
-               : formatted(
-                     "{} values differ from {} and are left as they are: it is not known whether they can be "
-                     "written ({})",
-                     all, title_, names),
-      formatted("where the manual says so, change AccessType to rw in {}",
-                desk_->profile->data_sheet.string())));
+      all == 1
+          ? message("{} differs from {} and is left as it is: it is not known to be writable",
+                    as_it_is(names), as_it_is(title_))
+          : message("{} values differ from {} and are left as they are: it is not known whether they can be "
+                    "written ({})",
+                    all, as_it_is(title_), as_it_is(names)),
+      message("where the manual says so, change AccessType to rw in {}",
+              as_it_is(desk_->profile->data_sheet.string()))));
   return {};
 }
 

@@ -77,7 +77,7 @@ class RestoreTarget {
   Result<void> check_value(ObjectAddress object, const Bytes& data, bool& outside) const;
   Result<void> check_pdos();
   std::string place_of(ObjectAddress object) const;
-  tl::unexpected<Error> unfit(Errc code, ObjectAddress object, std::string_view what, std::string hint) const;
+  tl::unexpected<Error> unfit(Errc code, ObjectAddress object, const Message& what, Message hint) const;
 
   show::Desk* desk_;
   const Backup* backup_;

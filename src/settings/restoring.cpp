@@ -55,8 +55,10 @@ class Restoring {
     auto taken = FileLock::take(attempt_.undoes.string() + ".lock");
     if (!taken) return fail(taken.error());
     if (!*taken)
-      return fail(Errc::refused, formatted("another servoctl is restoring {} into node {}", title_, node_),
-                  "wait until it ends, or find it with `ps`");
+      return fail(
+          Errc::refused,
+          message("another servoctl is restoring {} into node {}", as_it_is(title_), node_name(node_)),
+          "wait until it ends, or find it with `ps`");
     undone_lock_.emplace(std::move(**taken));
     return {};
   }
@@ -126,8 +128,8 @@ class Restoring {
     const auto refuse = [this](ObjectAddress object, std::string_view then, std::string_view now) {
       return fail(
           drive_error(Errc::refused, node_, object,
-                      formatted("{} has changed since the plan was made: it held {} then, and holds {} now",
-                                name_of(drive::target_at(desk_->profile, object)), then, now),
+                      message("{} has changed since the plan was made: it held {} then, and holds {} now",
+                              name_of(drive::target_at(desk_->profile, object)), then, now),
                       "nothing was written to this drive; look at the plan again"));
     };
     for (const auto& [object, then] : *options_.expected)
@@ -189,9 +191,9 @@ class Restoring {
   void tell_other_name() const {
     for (const auto& other : file_->passed_over())
       if (other.path == before_)
-        desk_->notices.push_back(formatted("{} is left as it is, {}: the old values of node {} go to {}",
-                                           before_.string(), other.origin.why, node_,
-                                           file_->path().string()));
+        desk_->notices.push_back(message("{} is left as it is, {}: the old values of node {} go to {}",
+                                         as_it_is(before_.string()), other.origin.why, node_name(node_),
+                                         as_it_is(file_->path().string())));
   }
 
   Value take_away_journals(Value done) {
@@ -213,7 +215,7 @@ class Restoring {
     for (const auto& notice : outcome.notices) desk_->notices.push_back(notice);
     if (differs_)
       desk_->notices.push_back(
-          formatted("the old values of node {} are in {}", node_, file_->path().string()));
+          message("the old values of node {} are in {}", node_name(node_), as_it_is(file_->path().string())));
     const auto* const stored = leaves_some() ? "nothing else differs; stored" : "nothing differs; stored";
     const auto* const done = differs_ || !options_.keep ? "restored" : stored;
     if (!outcome.failure) return take_away_journals(result(std::move(record), said(done), outcome));
@@ -223,7 +225,8 @@ class Restoring {
     if (end_ == RestoreEnd::rolled_back && left_.checksum.empty()) return take_away_journals(std::move(out));
     // `store` is what is left to do.
     if (outcome.all_written && is_refused_store(*outcome.failure)) return take_away_journals(std::move(out));
-    desk_->notices.push_back(formatted("node {}: --resume continues once the cause is removed", node_));
+    desk_->notices.push_back(
+        message("node {}: --resume continues once the cause is removed", node_name(node_)));
     return out;
   }
 

@@ -11,7 +11,7 @@
 namespace servoctl::settings {
 namespace {
 
-Result<bool> refuse_scan(std::string what) {
+Result<bool> refuse_scan(Message what) {
   return fail(Errc::refused, std::move(what),
               "delete that file to scan from the beginning, or name another file");
 }
@@ -24,23 +24,26 @@ Result<bool> resume_scan(show::Desk& desk, const std::filesystem::path& kept_in,
   if (!std::filesystem::exists(kept_in, error)) return false;
   const auto text = read_file(kept_in);
   if (!text) return fail(text.error());
-  if (!is_scan_file(*text)) return refuse_scan(formatted("{} is no scan of servoctl", kept_in.string()));
+  if (!is_scan_file(*text))
+    return refuse_scan(message("{} is no scan of servoctl", as_it_is(kept_in.string())));
   const auto start_again = [&](std::string_view why) {
     desk.notices.push_back(
-        formatted("{}: {}; the scan starts again, and replaces it", kept_in.string(), why));
+        message("{}: {}; the scan starts again, and replaces it", as_it_is(kept_in.string()), why));
     return false;
   };
   auto kept = read_scan(*text);
   if (!kept) return start_again("it is damaged, or of another version");
   if (kept->identity != identity_text(desk.session->url(), identity))
-    return refuse_scan(formatted("{} keeps the scan of another drive, node or bus", kept_in.string()));
+    return refuse_scan(
+        message("{} keeps the scan of another drive, node or bus", as_it_is(kept_in.string())));
   if (is_one_of_many(identity))
     return start_again("the drive has no serial number that tells it from others of its kind (1018h)");
   if (kept->state.ranges != state.ranges)
-    return refuse_scan(formatted("{} keeps a scan of {}", kept_in.string(), ranges_text(kept->state.ranges)));
+    return refuse_scan(message("{} keeps a scan of {}", as_it_is(kept_in.string()),
+                               as_it_is(ranges_text(kept->state.ranges))));
   state = std::move(kept->state);
-  desk.notices.push_back(formatted("the scan that {} keeps goes on at {} of {} indexes", kept_in.string(),
-                                   state.done, state.indexes()));
+  desk.notices.push_back(message("the scan that {} keeps goes on at {} of {} indexes",
+                                 as_it_is(kept_in.string()), state.done, state.indexes()));
   return true;
 }
 

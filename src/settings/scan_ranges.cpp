@@ -58,17 +58,18 @@ Result<std::vector<session::IndexRange>> parse_ranges(std::string_view text) {
   const auto parts = split(text, ',');
   if (parts.size() > kMostRanges)
     return fail(Errc::usage,
-                formatted("--range names {} ranges, and at most {} are possible", parts.size(), kMostRanges));
+                message("--range names {} ranges, and at most {} are possible", parts.size(), kMostRanges));
   for (const auto part : parts) {
     if (trim(part).empty() && parts.size() > 1)
-      return fail(Errc::usage, formatted("'{}': a range is missing beside a comma", text),
+      return fail(Errc::usage, message("'{}': a range is missing beside a comma", as_it_is(text)),
                   std::string(kHowWritten));
     const auto range = parse_range(trim(part));
     if (!range)
-      return fail(Errc::usage, formatted("'{}' is no range of indexes", part), std::string(kHowWritten));
+      return fail(Errc::usage, message("'{}' is no range of indexes", as_it_is(part)),
+                  std::string(kHowWritten));
     for (const auto& other : out)
       if (range->first <= other.last && other.first <= range->last)
-        return fail(Errc::usage, formatted("'{}': an index would be scanned twice", part));
+        return fail(Errc::usage, message("'{}': an index would be scanned twice", as_it_is(part)));
     out.push_back(*range);
   }
   if (out.empty()) return fail(Errc::usage, "--range names no indexes", std::string(kHowWritten));

@@ -36,8 +36,8 @@ Result<Selection> selection_of(const drive::Profile& profile, std::string_view w
   if (groups.count(std::string(word)) == 0) {
     std::vector<std::string> parts{"communication", "pdo", "params"};
     parts.insert(parts.end(), groups.begin(), groups.end());
-    return fail(Errc::usage, formatted("'{}' is not a part of the settings", word),
-                formatted("write one of {}", fmt::join(parts, ", ")));
+    return fail(Errc::usage, message("'{}' is not a part of the settings", as_it_is(word)),
+                message("write one of {}", fmt::join(parts, ", ")));
   }
   return Selection{[&profile, group = std::string(word)](ObjectAddress object) {
     const auto* parameter = profile.parameter(object);

@@ -56,8 +56,8 @@ Result<std::optional<std::string>> stored_eds(show::Desk& desk, session::ObjectS
   const auto answers = survey.read(std::span(&kStoredEds, 1));
   if (!answers) return fail(answers.error());
   const auto& bytes = answers->front();
-  const auto tell = [&](std::string_view why) {
-    desk.notices.push_back(formatted("the EDS that the drive stores (1021h) is not used: {}", why));
+  const auto tell = [&](const Message& why) {
+    desk.notices.push_back(message("the EDS that the drive stores (1021h) is not used: {}", why));
     return none;
   };
   if (!bytes) return is_absence(bytes.error()) ? none : tell(bytes.error().message);

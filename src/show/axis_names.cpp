@@ -145,4 +145,21 @@ void AxisNames::put_into(Value& value) const {
   table->columns.insert(node, {std::string(kAxis), {}, node->show});
 }
 
+void AxisNames::put_into(Message& message) const {
+  if (empty()) return;
+  const auto name = [this](Message::Argument& argument) {
+    if (auto* text = std::get_if<std::string>(&argument)) *text = in(std::string_view(*text));
+    auto* nodes = std::get_if<Nodes>(&argument);
+    if (nodes == nullptr) return;
+    nodes->names.clear();
+    for (const auto node : nodes->numbers) nodes->names.emplace_back(of(node));
+  };
+  message = message.changed([](std::string_view literal) { return literal; }, name);
+}
+
+std::string AxisNames::sentence(Message message) const {
+  put_into(message);
+  return message.text();
+}
+
 }  // namespace servoctl::show

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/message.hpp"
 #include "report/value.hpp"
 
 namespace servoctl::show {
@@ -24,6 +25,10 @@ class AxisNames {
   /// Puts `axis` before every `node` of the records and tables of a result, and into an `axis` that is null.
   void put_into(report::Value& value) const;
   void put_into(report::Record& record) const;
+  /// As in(), of the nodes in a message. What was put together elsewhere is looked through as a sentence is.
+  void put_into(Message& message) const;
+  /// The sentence with them.
+  std::string sentence(Message message) const;
 
  private:
   std::map<std::uint8_t, std::string> names_;

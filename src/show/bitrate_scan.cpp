@@ -43,15 +43,16 @@ void tell_bitrate(Desk& desk, const can::LinkState& before, std::uint32_t bitrat
   const auto at = drive::bitrate_text(bitrate);
   const auto url = session::canonical_url(desk.session->url());
   if (!url.starts_with(kSerialBus)) {
-    desk.notices.push_back(formatted("nodes answered at {0}: {1} stays at it (it was at {2})", at, url,
-                                     session::settings_text(before)));
+    desk.notices.push_back(message("nodes answered at {0}: {1} stays at it (it was at {2})", at,
+                                   as_it_is(url), session::settings_text(before)));
     return;
   }
   auto place = can::parse_slcan_place(url.substr(kSerialBus.size()));
   if (!place) return;
   place->bitrate = bitrate;
-  desk.notices.push_back(formatted("nodes answered at {}: from now on `-b {}`, because {} means {}", at,
-                                   can::slcan_url(*place), url, session::settings_text(before)));
+  desk.notices.push_back(message("nodes answered at {}: from now on `-b {}`, because {} means {}", at,
+                                 as_it_is(can::slcan_url(*place)), as_it_is(url),
+                                 session::settings_text(before)));
 }
 
 std::string asking_question(const std::string& name, const can::LinkState& now) {
@@ -84,10 +85,10 @@ Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<c
   const auto now = (*link)->state();
   if (!now) return fail(now.error());
   if (!session.energised().empty())
-    return fail(Errc::refused, formatted("{} stays at its bitrate: a drive is energised over it", name),
+    return fail(Errc::refused, message("{} stays at its bitrate: a drive is energised over it", name),
                 "`disable -n all` first");
   if (session.can()->sync() != nullptr)
-    return fail(Errc::refused, formatted("{} stays at its bitrate: SYNC is produced on it", name),
+    return fail(Errc::refused, message("{} stays at its bitrate: SYNC is produced on it", name),
                 "`sync stop` first");
   if (const auto silent = hold_silence(desk, **link); !silent) return fail(silent.error());
   if (const auto agreed = desk.confirm(asking_question(name, *now)); !agreed) return fail(agreed.error());
@@ -98,7 +99,7 @@ Result<std::vector<session::Identity>> scan_all_bitrates(Desk& desk, std::span<c
   if (done->bitrate && done->bitrate != now->bitrate) tell_bitrate(desk, *now, *done->bitrate);
   if (!done->bitrate)
     desk.notices.push_back(
-        formatted("no node answered at any bitrate; {} is at {} again", name, session::settings_text(*now)));
+        message("no node answered at any bitrate; {} is at {} again", name, session::settings_text(*now)));
   return std::move(done->found);
 }
 

@@ -35,8 +35,8 @@ struct Desk {
   std::filesystem::path state_folder;  ///< For records of changes under way; empty: none are kept.
   Audience* audience = nullptr;        ///< Null: nobody.
 
-  std::vector<Error> errors;  ///< Parts that failed while others succeeded; the first makes the exit code.
-  std::vector<std::string> notices;  ///< Things worth knowing that are no errors.
+  std::vector<Error> errors;     ///< Parts that failed while others succeeded; the first makes the exit code.
+  std::vector<Message> notices;  ///< Things worth knowing that are no errors.
 
   /// As those of Audience.
   Result<void> confirm(std::string_view question) const;

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kVersion = 1;
 constexpr std::uintmax_t kMostBytes = 1U << 16U;
 
-tl::unexpected<Error> damaged(std::string message) {
+tl::unexpected<Error> damaged(Message message) {
   return fail(Errc::file, std::move(message),
               "delete the file; it only remembers what -d was for this drive");
 }
@@ -58,7 +58,7 @@ Result<void> KnownDriveFile::write(const KnownDrive& drive) const {
 Result<void> KnownDriveFile::remove() const {
   std::error_code error;
   std::filesystem::remove(path_, error);
-  if (error) return fail(Errc::file, formatted("{}: {}", path_.string(), error.message()));
+  if (error) return fail(Errc::file, message("{}: {}", as_it_is(path_.string()), error.message()));
   return {};
 }
 

@@ -138,8 +138,8 @@ std::vector<std::string> object_values(const drive::Profile& profile, const od::
 
 Result<void> check_parameters(const drive::Profile& profile) {
   if (!profile.parameters.empty()) return {};
-  return fail(Errc::negative, formatted("{} has no panel parameters", profile.family),
-              formatted("`objects -d {}` lists its objects", profile.family));
+  return fail(Errc::negative, message("{} has no panel parameters", as_it_is(profile.family)),
+              message("`objects -d {}` lists its objects", as_it_is(profile.family)));
 }
 
 }  // namespace servoctl::show

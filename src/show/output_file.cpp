@@ -28,7 +28,8 @@ bool is_replaced(const fs::path& file) {
 Result<void> may_replace(const fs::path& file, bool read_only, const Desk& desk) {
   if (!is_replaced(file)) return {};
   if (read_only)
-    return fail(Errc::refused, formatted("{} exists, and --read-only replaces no file", file.string()),
+    return fail(Errc::refused,
+                message("{} exists, and --read-only replaces no file", as_it_is(file.string())),
                 "name a file that does not exist yet");
   return desk.confirm(question_about(file));
 }

@@ -42,7 +42,7 @@ std::string owed_name(const drive::Profile* profile, ObjectAddress object) {
   return target.parameter != nullptr ? target.parameter->id : to_string(object);
 }
 
-tl::unexpected<Error> damaged(std::string message) {
+tl::unexpected<Error> damaged(Message message) {
   return fail(Errc::file, std::move(message), "delete the file; it only says what waits for a restart");
 }
 
@@ -262,8 +262,8 @@ report::List owed_records(const drive::Profile* profile, const std::vector<OwedV
 
 std::string owed_notice(const Desk& desk, std::uint8_t node, const OwedRestart& owed) {
   if (owed.unread)
-    return formatted("node {}: what waits for a restart is not known: {}; {}", node, owed.unread->message,
-                     owed.unread->hint);
+    return formatted("node {}: what waits for a restart is not known: {}; {}", node,
+                     owed.unread->message.text(), owed.unread->hint.text());
   if (owed.values.empty()) return {};
   const auto what = owed_text(desk.profile, node, owed.values, desk.speaks_chinese());
   const bool kept = std::ranges::all_of(owed.values, &OwedValue::kept);

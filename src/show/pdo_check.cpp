@@ -28,8 +28,8 @@ std::string name_of(const drive::Profile& profile, ObjectAddress object) {
   return label.empty() ? to_string(object) : formatted("{} ({})", to_string(object), label);
 }
 
-tl::unexpected<Error> no(const Pdo& pdo, std::string why, std::string hint = {}) {
-  return fail(Errc::usage, formatted("{}: {}", name_of(pdo), std::move(why)), std::move(hint));
+tl::unexpected<Error> no(const Pdo& pdo, const Message& why, Message hint = {}) {
+  return fail(Errc::usage, message("{}: {}", name_of(pdo), why), std::move(hint));
 }
 
 /// What the data says of it; doubts left aside.
@@ -58,17 +58,18 @@ Result<void> check_entry(const drive::Profile& profile, const Pdo& pdo, const Pd
   const auto* known = profile.dictionary.find(entry.object);
   if (known == nullptr) {
     if (profile.is_generic()) return {};
-    return no(pdo, formatted("{} is not in the dictionary of {}", to_string(entry.object), profile.family),
-              formatted("`objects -d {}` lists what it has", profile.family));
+    return no(pdo,
+              message("{} is not in the dictionary of {}", to_string(entry.object), as_it_is(profile.family)),
+              message("`objects -d {}` lists what it has", as_it_is(profile.family)));
   }
   if (!may_map(*known, pdo.direction))
     return no(pdo, name + " cannot be mapped here", direction_hint(*known));
   const auto bits = bits_of(profile, entry.object);
   const bool sure = !profile.is_generic() && !known->doubts.about("type");
   if (bits && sure && *bits != entry.bits)
-    return no(pdo, formatted("{} has {} bits, not {}", name, *bits, entry.bits));
+    return no(pdo, message("{} has {} bits, not {}", name, *bits, entry.bits));
   if (profile.rules.pdo.whole_bytes && entry.bits % 8 != 0)
-    return no(pdo, formatted("{}: {} bits are not whole bytes", name, entry.bits),
+    return no(pdo, message("{}: {} bits are not whole bytes", name, entry.bits),
               "this drive maps bytes only");
   return {};
 }
@@ -100,9 +101,9 @@ Result<void> check_type(const drive::Profile& profile, const Pdo& pdo) {
   const bool remote = pdo.type == 252 || pdo.type == 253;
   const bool transmit = pdo.direction == PdoDirection::transmit;
   if (reserved || (remote && !transmit))
-    return no(pdo, formatted("there is no transmission type {}", pdo.type), types_text(profile, pdo));
+    return no(pdo, message("there is no transmission type {}", pdo.type), types_text(profile, pdo));
   if (transmit && std::count(refused.begin(), refused.end(), pdo.type) > 0)
-    return no(pdo, formatted("this drive does not support transmission type {}", pdo.type),
+    return no(pdo, message("this drive does not support transmission type {}", pdo.type),
               types_text(profile, pdo));
   return {};
 }
@@ -113,8 +114,8 @@ Result<void> check_remote(const drive::Profile& profile, const Pdo& wanted) {
   const bool forbidden = (wanted.cob_id & canopen::kPdoNoRtr) != 0;
   if (wanted.direction != PdoDirection::transmit || !remote || !forbidden) return {};
   return no(wanted,
-            formatted("transmission type {} is sent on remote frames, which bit 30 of its COB-ID forbids",
-                      wanted.type),
+            message("transmission type {} is sent on remote frames, which bit 30 of its COB-ID forbids",
+                    wanted.type),
             types_text(profile, wanted));
 }
 
@@ -124,9 +125,9 @@ Result<void> check_bits(const drive::Profile& profile, const Pdo& present, const
   const bool other_id = (may_change & kBasicCanId) != 0;
   if (other_id && (wanted.cob_id & canopen::kPdoExtended) != 0)
     return no(wanted,
-              formatted("this drive has 11-bit CAN-IDs, {} is a 29-bit one", can_id_text(wanted.cob_id)),
+              message("this drive has 11-bit CAN-IDs, {} is a 29-bit one", can_id_text(wanted.cob_id)),
               "write one up to 0x7FF");
-  return no(wanted, formatted("this drive has the fixed COB-ID {}", can_id_text(present.cob_id)),
+  return no(wanted, message("this drive has the fixed COB-ID {}", can_id_text(present.cob_id)),
             "it can only be enabled and disabled");
 }
 
@@ -138,8 +139,8 @@ Result<void> check_can_id(const Pdo& wanted, std::span<const Pdo> all) {
   for (const auto& other : all) {
     const bool same = other.direction == wanted.direction && other.number == wanted.number;
     if (!same && other.is_valid() && other.can_id() == wanted.can_id())
-      return no(wanted, formatted("CAN-ID {} is used by {} of the same node", text, name_of(other)),
-                formatted("`pdo disable {}` frees it", name_of(other)));
+      return no(wanted, message("CAN-ID {} is used by {} of the same node", text, name_of(other)),
+                message("`pdo disable {}` frees it", as_it_is(name_of(other))));
   }
   return {};
 }
@@ -162,14 +163,14 @@ std::optional<std::uint8_t> bits_of(const drive::Profile& profile, ObjectAddress
 Result<void> check_mapping(const drive::Profile& profile, const Pdo& pdo) {
   const auto& rules = profile.rules.pdo;
   if (is_fixed(profile, pdo))
-    return no(pdo, formatted("its mapping 0x{:04X} is fixed", pdo.mapping_index()),
+    return no(pdo, message("its mapping 0x{:04X} is fixed", pdo.mapping_index()),
               "`pdo enable` selects it, `pdo show` lists what it carries");
   if (pdo.entries.size() > rules.most_entries)
-    return no(pdo, formatted("{} objects are too many, {} fit", pdo.entries.size(), rules.most_entries));
+    return no(pdo, message("{} objects are too many, {} fit", pdo.entries.size(), rules.most_entries));
   for (const auto& entry : pdo.entries)
     if (const auto fits = check_entry(profile, pdo, entry); !fits) return fits;
   if (pdo.bits() > rules.most_bits)
-    return no(pdo, formatted("{} bits are too many, {} fit", pdo.bits(), rules.most_bits),
+    return no(pdo, message("{} bits are too many, {} fit", pdo.bits(), rules.most_bits),
               "spread the objects over two PDOs");
   return {};
 }
@@ -180,7 +181,7 @@ Result<void> check_communication(const drive::Profile& profile, const Pdo& prese
   if (wanted.is_valid() && wanted.cob_id != present.cob_id)
     if (const auto free = check_can_id(wanted, all); !free) return free;
   const auto missing = [&](bool now, bool then, std::string_view what) {
-    return then && !now ? Result<void>(no(wanted, formatted("it has no {} on this drive", what)))
+    return then && !now ? Result<void>(no(wanted, message("it has no {} on this drive", what)))
                         : Result<void>();
   };
   if (const auto r = missing(present.inhibit.has_value(), wanted.inhibit.has_value(), "inhibit time"); !r)

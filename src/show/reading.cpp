@@ -96,9 +96,10 @@ void tell_size(Desk& desk, const Reading& reading) {
   if (!reading.bytes || reading.type || !meaning.type_known || !meaning.size_known) return;
   const auto fitted = drive::as_answered(meaning, reading.bytes->size());
   if (fitted.type == meaning.type) return;
-  desk.notices.push_back(formatted("node {}, object {}: the drive answers {} bytes, not {}: taken as {}",
-                                   reading.node, to_string(reading.target.address), reading.bytes->size(),
-                                   od::size_of(meaning.type).value_or(0), od::name(fitted.type)));
+  desk.notices.push_back(message("node {}, object {}: the drive answers {} bytes, not {}: taken as {}",
+                                 node_name(reading.node), to_string(reading.target.address),
+                                 reading.bytes->size(), od::size_of(meaning.type).value_or(0),
+                                 od::name(fitted.type)));
 }
 
 List reading_row(const Desk& desk, const Reading& reading) {

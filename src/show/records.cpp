@@ -85,10 +85,13 @@ void name_abort(const drive::Profile* profile, bool chinese, Error& error) {
   const auto generic = canopen::sdo_abort_text(*error.abort_code);
   const auto words = abort_words(profile, chinese, *error.abort_code);
   if (words == generic) return;
-  const auto at = error.message.find(generic);
   // Of a standard code the manual has words in Chinese alone.
-  if (at != std::string::npos && (chinese || !canopen::is_standard_sdo_abort(*error.abort_code)))
-    error.message.replace(at, generic.size(), words);
+  if (!chinese && canopen::is_standard_sdo_abort(*error.abort_code)) return;
+  error.message = error.message.changed([](auto literal) { return literal; },
+                                        [&](Message::Argument& argument) {
+                                          const auto* text = std::get_if<std::string>(&argument);
+                                          if (text != nullptr && *text == generic) argument = Verbatim{words};
+                                        });
 }
 
 Value marks_record(const std::vector<od::Mark>& marks) {
@@ -117,8 +120,8 @@ Record doubts_record(const od::Doubts& doubts) {
 Value error_record(const Error& error, std::string_view abort_words) {
   return Record{{"code", name(error.code)},
                 {"exit", exit_code(error.code)},
-                {"message", error.message},
-                {"hint", report::text_or_null(error.hint)},
+                {"message", error.message.text()},
+                {"hint", report::text_or_null(error.hint.text())},
                 {"axis"},
                 {"node", error.node ? Value(*error.node) : Value()},
                 {"object", error.object ? Value(to_string(*error.object)) : Value()},

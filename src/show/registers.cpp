@@ -61,7 +61,7 @@ void add_parameters(Desk& desk, std::uint8_t node, Record& out) {
     const auto id = target.parameter != nullptr ? target.parameter->id : to_string(target.address);
     const auto title = desk.chinese ? target.label_zh() : target.label();
     if (!answers[i]) {
-      out.push_back({id, answers[i].error().message, Show::text, title});
+      out.push_back({id, answers[i].error().message.text(), Show::text, title});
       continue;
     }
     const auto decoded = decode_value({node, target, {}, Bytes{}}, *answers[i]);
@@ -95,9 +95,9 @@ report::Table register_scan(Desk& desk, std::span<const session::Identity> found
   }
   desk.notices.push_back(desk.profile == nullptr
                              ? "registers do not say what a device is: -d FAMILY says it, and shows its alarm"
-                             : formatted("registers do not say what a device is: that these are {} was "
-                                         "said with -d",
-                                         desk.profile->family));
+                             : message("registers do not say what a device is: that these are {} was "
+                                       "said with -d",
+                                       as_it_is(desk.profile->family)));
   return table;
 }
 

@@ -41,7 +41,7 @@ Result<void> apply_option(const CellSpec& spec, const CellSpec::Option& option,
   if (option.key != "silent" && option.key != "delay") {
     const std::string keys[] = {"state", "fault", "silent", "delay", "lie", "counts", "panel", "lss"};
     return spec.wrong(
-        formatted("'{}' is not an option of a simulated bus: use {}", option.key, one_of(keys)));
+        message("'{}' is not an option of a simulated bus: use {}", as_it_is(option.key), one_of(keys)));
   }
   const auto time = time_of(spec, option);
   if (!time) return fail(time.error());
@@ -83,7 +83,7 @@ Result<Cell> build_cell(std::string_view text, std::span<const std::filesystem::
     if (!profile) return fail(profile.error());
     for (const auto& other : cell.drives)
       if (other->node() == place.node && place.node != canopen::kUnconfigured)
-        return spec->wrong(formatted("node-ID {} is given twice", place.node));
+        return spec->wrong(message("node-ID {} is given twice", place.node));
     const auto key = formatted("{}.{}", cell.drives.size() + 1, place.family);
     cell.drives.push_back(std::make_unique<SimDrive>(**profile, place.node, *cell.memory, key));
   }

@@ -28,7 +28,7 @@ Result<CellSpec::Place> parse_place(const CellSpec& spec, std::string_view text)
     return spec.wrong("a drive without a node-ID (255) can only be reached by LSS: add ?lss");
   if (!node ||
       ((*node < canopen::kFirstNode || *node > canopen::kLastNode) && *node != canopen::kUnconfigured))
-    return spec.wrong(formatted("'{}' is not a node-ID (1..127)", text.substr(at + 1)));
+    return spec.wrong(message("'{}' is not a node-ID (1..127)", as_it_is(text.substr(at + 1))));
   place.node = static_cast<std::uint8_t>(*node);
   return place;
 }
@@ -59,9 +59,9 @@ Result<bool> plan_fault(const CellSpec& spec, std::string_view text, std::span<D
     const auto alarm = alarm_of(drive->profile(), text.substr(0, at));
     if (!alarm || !delay)
       return spec.wrong(
-          formatted("'fault={}' is not CODE@TIME or PANEL@TIME; options stand behind all drives: "
-                    "sim:gsd600@1,dm@2?fault=0xFF00@2s",
-                    text));
+          message("'fault={}' is not CODE@TIME or PANEL@TIME; options stand behind all drives: "
+                  "sim:gsd600@1,dm@2?fault=0xFF00@2s",
+                  text));
     drive->raise_fault_at(*alarm, now + *delay);
   }
   return true;
@@ -70,7 +70,7 @@ Result<bool> plan_fault(const CellSpec& spec, std::string_view text, std::span<D
 Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<DriveModel* const> drives) {
   const auto counts = parse_digits(text, 10);
   if (!counts || *counts < 2)
-    return spec.wrong(formatted("'counts={}': counts per revolution must be 2 or more", text));
+    return spec.wrong(message("'counts={}': counts per revolution must be 2 or more", text));
   bool taken = false;
   for (auto* drive : drives) {
     if (!drive->has_own_counts()) continue;
@@ -78,7 +78,7 @@ Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<D
     taken = true;
   }
   if (taken) return true;
-  return spec.wrong(formatted("'counts={}': all drives here report their counts per revolution", text));
+  return spec.wrong(message("'counts={}': all drives here report their counts per revolution", text));
 }
 
 /// `NAME=VALUE` of a parameter of this family.
@@ -101,11 +101,11 @@ Result<bool> set_on_panel(const CellSpec& spec, std::string_view text, std::span
       if (!value) continue;
       known = true;
       if (!drive->set_on_panel(value->first, value->second))
-        return spec.wrong(formatted("'panel={}': {} cannot be set to {} on the panel of the {}", text,
-                                    value->first, value->second, drive->profile().family));
+        return spec.wrong(message("'panel={}': {} cannot be set to {} on the panel of the {}", text,
+                                  value->first, value->second, as_it_is(drive->profile().family)));
     }
     if (!known)
-      return spec.wrong(formatted(
+      return spec.wrong(message(
           "'panel={}' is not NAME=VALUE of parameters that a drive here has: sim:sv2@1?panel=PA-20=0", text));
   }
   return true;
@@ -117,7 +117,7 @@ bool CellSpec::has(std::string_view key) const {
   return std::any_of(options.begin(), options.end(), [&](const Option& option) { return option.key == key; });
 }
 
-tl::unexpected<Error> CellSpec::wrong(std::string what) const {
+tl::unexpected<Error> CellSpec::wrong(Message what) const {
   return fail(Errc::usage, std::move(what), std::string(example));
 }
 
@@ -160,7 +160,7 @@ Result<const drive::Profile*> profile_of(std::vector<std::shared_ptr<const drive
 
 Result<Duration> time_of(const CellSpec& spec, const CellSpec::Option& option) {
   auto time = read_duration(option.value);
-  if (!time) return spec.wrong(formatted("{}: {}; {}", option.key, time.error().message, time.error().hint));
+  if (!time) return spec.wrong(message("{}: {}; {}", option.key, time.error().message, time.error().hint));
   return time;
 }
 
@@ -171,7 +171,7 @@ Result<std::vector<std::string_view>> lies_of(const CellSpec& spec, const CellSp
   for (const auto word : words)
     if (std::find(known.begin(), known.end(), word) == known.end())
       return spec.wrong(
-          formatted("'lie={}': simulated drives here can lie by {}", option.value, one_of(names)));
+          message("'lie={}': simulated drives here can lie by {}", option.value, one_of(names)));
   return words;
 }
 

@@ -35,7 +35,7 @@ struct CellSpec {
   /// Whether the option was given, with a value or without.
   bool has(std::string_view key) const;
   /// Errc::usage; the hint is how such drives are written.
-  tl::unexpected<Error> wrong(std::string what) const;
+  tl::unexpected<Error> wrong(Message what) const;
 };
 
 /// Errc::usage for what is wrong in the text; `example` is its hint, and outlives the answer.

@@ -17,9 +17,10 @@ Result<const drive::Profile*> coe_profile_of(EscCell& cell, const CellSpec::Plac
                                              std::span<const std::filesystem::path> folders) {
   const auto profile = profile_of(cell.profiles, place.family, folders);
   if (profile && !(*profile)->rules.coe.exists())
-    return fail(Errc::usage,
-                formatted("{} has no EtherCAT: the rules of this family have no [coe] section", place.family),
-                formatted("put it on a simulated CAN bus: sim:{}@{}", place.family, place.node));
+    return fail(
+        Errc::usage,
+        message("{} has no EtherCAT: the rules of this family have no [coe] section", as_it_is(place.family)),
+        message("put it on a simulated CAN bus: sim:{}@{}", as_it_is(place.family), place.node));
   return profile;
 }
 
@@ -40,8 +41,8 @@ Result<EscCell> build_esc_cell(std::string_view text, std::span<const std::files
     if (!profile) return fail(profile.error());
     const auto position = cell.slaves.size() + 1;
     if (place.node != position)
-      return spec->wrong(formatted("drive {0} of an EtherCAT ring is node {0}, not {1}: nodes are positions",
-                                   position, place.node));
+      return spec->wrong(message("drive {0} of an EtherCAT ring is node {0}, not {1}: nodes are positions",
+                                 position, place.node));
     const auto key = formatted("{}.{}", position, place.family);
     auto options = EscSlave::Options::of(**profile);
     options.sii = *sii;

@@ -20,8 +20,8 @@ struct Task {
   TimePoint now;
 
   /// `'lose=x': …`.
-  tl::unexpected<Error> wrong(std::string_view what) const {
-    return spec->wrong(formatted("'{}={}': {}", option->key, option->value, what));
+  tl::unexpected<Error> wrong(const Message& what) const {
+    return spec->wrong(message("'{}={}': {}", option->key, option->value, what));
   }
 };
 
@@ -144,9 +144,9 @@ Result<void> plan_window(const Task& task, RingEvent::Kind begin, RingEvent::Kin
   const auto window = window_of(task.option->value, task.cell->slaves.size());
   if (!window)
     return task.wrong(
-        formatted("it is POSITION@TIME or POSITION@FROM-TO, with a position of 1 to {}, such as "
-                  "{}=1@5s-8s",
-                  task.cell->slaves.size(), task.option->key));
+        message("it is POSITION@TIME or POSITION@FROM-TO, with a position of 1 to {}, such as "
+                "{}=1@5s-8s",
+                task.cell->slaves.size(), task.option->key));
   task.cell->ring.plan({task.now + window->from, begin, window->slave});
   if (window->to) task.cell->ring.plan({task.now + *window->to, end, window->slave});
   return {};
@@ -204,8 +204,8 @@ Result<SiiFault> sii_fault_of(const CellSpec& spec) {
                                            [&](const auto& f) { return f.name == option.value; });
     if (found == std::end(kFaults))
       return spec.wrong(
-          formatted("'sii={}': what is wrong with an SII is checksum, blank, cut-short, mailboxes or mute",
-                    option.value));
+          message("'sii={}': what is wrong with an SII is checksum, blank, cut-short, mailboxes or mute",
+                  option.value));
     out = found->fault;
   }
   return out;
@@ -223,7 +223,8 @@ Result<void> apply_option(const CellSpec& spec, const CellSpec::Option& option, 
     return way->apply == nullptr ? Result<void>() : way->apply({&spec, &option, &cell, now});
   std::vector<std::string> keys;
   for (const auto& known : kWays) keys.emplace_back(known.key);
-  return spec.wrong(formatted("'{}' is not an option of a simulated ring: use {}", option.key, one_of(keys)));
+  return spec.wrong(
+      message("'{}' is not an option of a simulated ring: use {}", as_it_is(option.key), one_of(keys)));
 }
 
 }  // namespace servoctl::sim

@@ -32,16 +32,17 @@ Result<void> Memory::parse(std::string_view text) {
   for (const auto line : split(text, '\n')) {
     ++number;
     if (number == 1 && line != kHeader)
-      return fail(Errc::file, formatted("{}: not a memory of simulated drives", file_.string()),
+      return fail(Errc::file, message("{}: not a memory of simulated drives", as_it_is(file_.string())),
                   "name a file that does not exist yet");
     if (line.empty() || line.front() == '#') continue;
     const auto words = split(line, ' ');
     const auto object = words.size() == 3 ? parse_object_address(words[1]) : std::nullopt;
     const auto bytes = words.size() == 3 ? parse_hex_bytes(words[2]) : std::nullopt;
     if (!object || !bytes)
-      return fail(Errc::file,
-                  formatted("{}:{}: expected a drive, an object and its bytes", file_.string(), number),
-                  "correct the line or delete the file");
+      return fail(
+          Errc::file,
+          message("{}:{}: expected a drive, an object and its bytes", as_it_is(file_.string()), number),
+          "correct the line or delete the file");
     drives_[std::string(words[0])][*object] = *bytes;
   }
   return {};

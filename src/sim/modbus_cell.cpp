@@ -54,8 +54,8 @@ Result<void> apply_modbus_option(const CellSpec& spec, const CellSpec::Option& o
   }
   if (option.key != "silent" && option.key != "delay") {
     const std::string keys[] = {"state", "fault", "silent", "delay", "damage", "lie"};
-    return spec.wrong(
-        formatted("'{}' is not an option of simulated Modbus drives: use {}", option.key, one_of(keys)));
+    return spec.wrong(message("'{}' is not an option of simulated Modbus drives: use {}",
+                              as_it_is(option.key), one_of(keys)));
   }
   const auto time = time_of(spec, option);
   if (!time) return fail(time.error());
@@ -122,13 +122,13 @@ Result<ModbusCell> build_modbus_cell(std::string_view text, std::span<const std:
     const auto profile = profile_of(cell.profiles, place.family, folders);
     if (!profile) return fail(profile.error());
     if (!(*profile)->rules.modbus.exists())
-      return fail(
-          Errc::usage,
-          formatted("{} has no Modbus: the rules of this family have no [modbus] section", place.family),
-          formatted("put it on a simulated CAN bus: sim:{}@{}", place.family, place.node));
+      return fail(Errc::usage,
+                  message("{} has no Modbus: the rules of this family have no [modbus] section",
+                          as_it_is(place.family)),
+                  message("put it on a simulated CAN bus: sim:{}@{}", as_it_is(place.family), place.node));
     const auto taken = [&](const auto& unit) { return unit->unit() == place.node; };
     if (std::any_of(cell.units.begin(), cell.units.end(), taken))
-      return spec->wrong(formatted("address {} is given twice", place.node));
+      return spec->wrong(message("address {} is given twice", place.node));
     const auto key = formatted("{}.{}", cell.units.size() + 1, place.family);
     cell.units.push_back(std::make_unique<ModbusUnit>(**profile, place.node, *cell.memory, key));
     cell.units.back()->power_on(now);

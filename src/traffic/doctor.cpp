@@ -78,8 +78,8 @@ Result<std::vector<Finding>> ask_all(session::Session& session) {
   const auto found = session::nodes_present(session);
   if (!found && found.error().code == Errc::interrupted) return fail(found.error());
   if (!found && found.error().code != Errc::timeout)
-    return std::vector<Finding>{{Level::fault, "cannot-send", found.error().message,
-                                 "the question did not get through", found.error().hint}};
+    return std::vector<Finding>{{Level::fault, "cannot-send", found.error().message.text(),
+                                 "the question did not get through", found.error().hint.text()}};
   if (!found)
     return std::vector<Finding>{{Level::fault, "no-node", "no node answered a read of 1000h",
                                  "no power, no cable, another bitrate, or all of them are stopped (NMT)",
@@ -140,7 +140,7 @@ Result<std::vector<Finding>> hear_link(can::LinkControl& link, LinkFacts& facts,
   facts.state = *after;
   auto out = bus_findings(picture, &facts);
   const auto notices = (*bus)->take_notices();
-  if (!notices.empty()) add_fd_frames(out, notices.front());
+  if (!notices.empty()) add_fd_frames(out, notices.front().text());
   if (!asked.empty()) drop_advice(out);
   add(out, std::move(asked));
   return out;

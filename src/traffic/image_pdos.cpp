@@ -37,11 +37,11 @@ Error no_process_data(session::Session& session, std::uint8_t node) {
   const auto state = network.records().state(node);
   return drive_error(
       Errc::negative, node,
-      formatted("no PDOs flow: {}", state ? formatted("it is in {}", network.state_word(*state))
-                                          : std::string("servoctl has not brought it to OP")),
-      formatted("PDOs flow in OP, and as long as servoctl keeps the drive there: `{}` at the prompt or in a "
-                "batch file, then `pdo watch`",
-                network.state_command(node, session::NodeState::operational)));
+      message("no PDOs flow: {}", state ? message("it is in {}", network.state_word(*state))
+                                        : std::string("servoctl has not brought it to OP")),
+      message("PDOs flow in OP, and as long as servoctl keeps the drive there: `{}` at the prompt or in a "
+              "batch file, then `pdo watch`",
+              as_it_is(network.state_command(node, session::NodeState::operational))));
 }
 
 }  // namespace

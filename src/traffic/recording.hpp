@@ -17,7 +17,7 @@ using can::for_each_frame;
 Result<std::string> read_recording(std::string_view path);
 
 /// What a user has to know of the lines or records that were left out.
-std::vector<std::string> notices(std::string_view path, const Strays& strays);
+std::vector<Message> notices(std::string_view path, const Strays& strays);
 
 /// Errc::file for a recording that is damaged; nothing for any other.
 Result<void> check_damage(std::string_view path, const Strays& strays);

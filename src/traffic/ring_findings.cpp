@@ -105,9 +105,9 @@ Finding no_ring(const std::string& url, std::optional<bool> link, const Error& e
     return {Level::fault, "no-link", formatted("{} has no link", url), "no cable, or nobody at its other end",
             "check the cable to the first slave (its IN), and that the slave has power"};
   return {
-      Level::fault, "no-answer", error.message,
+      Level::fault, "no-answer", error.message.text(),
       "the port works, and no slave answers: the wrong port, no power, or the cable is in the OUT of the first slave",
-      error.hint};
+      error.hint.text()};
 }
 
 }  // namespace servoctl::traffic

@@ -51,9 +51,9 @@ void add_own_units(show::Desk& desk, std::vector<Channel>& channels) {
 }
 
 /// A number in the unit people think in, and that unit.
-Error no_number(const Channel& channel, const std::string& why) {
+Error no_number(const Channel& channel, const Message& why) {
   return show::located(
-      make_error(Errc::usage, formatted("{} is not numeric and cannot be plotted: {}", channel.name, why),
+      make_error(Errc::usage, message("{} is not numeric and cannot be plotted: {}", channel.name, why),
                  "`read` and `watch` show it"),
       channel.node, channel.target.address);
 }
@@ -164,7 +164,7 @@ show::DecodedValue decoded(const show::Desk& desk, const Channel& channel, ByteS
 Result<void> check_number(const Channel& channel) {
   const auto meaning = drive::meaning(channel.target, channel.node);
   if (!meaning.type_known || od::is_integer(meaning.type) || od::is_real(meaning.type)) return {};
-  return fail(no_number(channel, formatted("it is of type {}", od::name(meaning.type))));
+  return fail(no_number(channel, message("it is of type {}", od::name(meaning.type))));
 }
 
 Result<void> check_number(const Channel& channel, ByteSpan bytes) {

@@ -240,7 +240,7 @@ class Communication {
     for (const auto report :
          network == nullptr ? std::vector<can::ControllerReport>() : network->take_reports()) {
       reports_ += report != can::ControllerReport::error_active;
-      desk_->notices.push_back(session_->url() + ": " + std::string(can::text(report)));
+      desk_->notices.push_back(message("{}: {}", as_it_is(session_->url()), can::text(report)));
     }
     for (const auto& event : session_->take_events()) {
       const auto* emergency = std::get_if<canopen::Emergency>(&event.what);

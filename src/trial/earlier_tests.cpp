@@ -88,7 +88,7 @@ std::optional<TestResult> test_of(const show::Desk& desk, const Value& value) {
 }
 
 tl::unexpected<Error> no_tests(std::string_view file) {
-  return fail(Errc::file, formatted("{} contains no test results", file),
+  return fail(Errc::file, message("{} contains no test results", as_it_is(file)),
               "such a file is written by `test … --json >FILE`");
 }
 
@@ -133,9 +133,10 @@ Result<void> add_tests(const show::Desk& desk, const Value& document, std::strin
   }
   if (auto last = broken_off(document, tests)) {
     if (last->node == 0)
-      return fail(Errc::file,
-                  formatted("{}: the test did not run: {}", file, text(&last->criteria.front().figure)),
-                  "run it again, or leave this --tests out");
+      return fail(
+          Errc::file,
+          message("{}: the test did not run: {}", as_it_is(file), text(&last->criteria.front().figure)),
+          "run it again, or leave this --tests out");
     tests.push_back(std::move(*last));
     auto axis = text(find(*find(document, "error"), "axis"));
     axes.push_back(axis.empty() && !axes.empty() ? axes.back() : std::move(axis));
@@ -161,11 +162,11 @@ std::optional<std::string> otherness(const show::Desk& desk, const TestResult& t
   return out.empty() ? out : out + " differs";
 }
 
-Error other_drive(const TestResult& test, const std::string& what) {
+Error other_drive(const TestResult& test, const Message& what) {
   const auto time = text(find(Value(test.origin), "time"));
   return drive_error(Errc::refused, test.node,
-                     formatted("`test {}`{} was run on another drive: {}", test.test,
-                               time.empty() ? "" : " of " + time, what),
+                     message("`test {}`{} was run on another drive: {}", as_it_is(test.test),
+                             time.empty() ? "" : " of " + time, what),
                      "leave this --tests out, or test the present drive");
 }
 
@@ -210,8 +211,8 @@ Result<void> check_tested(show::Desk& desk, const std::vector<TestResult>& tests
       if (test.node != drive.node) continue;
       const auto what = otherness(desk, test, drive);
       if (!what)
-        desk.notices.push_back(
-            formatted("node {}: `test {}` does not say which drive it was run on", test.node, test.test));
+        desk.notices.push_back(message("node {}: `test {}` does not say which drive it was run on",
+                                       node_name(test.node), as_it_is(test.test)));
       else if (!what->empty())
         return fail(other_drive(test, *what));
     }

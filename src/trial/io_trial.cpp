@@ -48,7 +48,7 @@ class InputNames {
     }
     auto hint = did_you_mean(word, words);
     if (hint.empty()) hint = "use negative-limit, positive-limit, home, or bit0 to bit31 of 60FDh";
-    return fail(Errc::usage, formatted("'{}' is not an input", word), std::move(hint));
+    return fail(Errc::usage, message("'{}' is not an input", as_it_is(word)), std::move(hint));
   }
 
  private:

@@ -36,7 +36,7 @@ void judge_motion(const show::Desk& desk, const motion::MotionReport& done, repo
     out.criteria.push_back(std::move(criterion));
   };
   add("completed", say(desk, "motion completed"), done.outcome.has_value(),
-      done.outcome ? std::string() : done.outcome.error().message);
+      done.outcome ? std::string() : done.outcome.error().message.text());
   add("left_without_power", say(desk, "left de-energised"), done.end.verified,
       motion::end_text(done.end, done.watchdog));
 }

@@ -29,12 +29,11 @@ Result<std::string> line_of(std::string_view option, std::string_view typed, std
   const auto text = trim(typed);
   if (printable(text) != text)
     return fail(Errc::usage,
-                formatted("{}: '{}' has characters that control or hide", option, printable(text)),
+                message("{}: '{}' has characters that control or hide", option, as_it_is(printable(text))),
                 "one line of plain text, in UTF-8");
   if (display_width(text) > longest)
-    return fail(Errc::usage,
-                formatted("{}: {} columns are too many for the page", option, display_width(text)),
-                formatted("at most {}; a Chinese character takes two", longest));
+    return fail(Errc::usage, message("{}: {} columns are too many for the page", option, display_width(text)),
+                message("at most {}; a Chinese character takes two", longest));
   return std::string(text);
 }
 
@@ -48,13 +47,13 @@ Result<std::vector<std::string>> names_of(std::string_view typed) {
     auto name = line_of("--signatures", part, kLongestSignature);
     if (!name) return fail(name.error());
     if (name->empty())
-      return fail(Errc::usage, formatted("--signatures: '{}' has a line for nobody", typed),
+      return fail(Errc::usage, message("--signatures: '{}' has a line for nobody", as_it_is(typed)),
                   "names with a comma between: Commissioning engineer,Customer");
     out.push_back(std::move(*name));
   }
   if (out.size() > kMostSignatures)
-    return fail(Errc::usage, formatted("--signatures: {} lines do not fit", out.size()),
-                formatted("at most {}", kMostSignatures));
+    return fail(Errc::usage, message("--signatures: {} lines do not fit", out.size()),
+                message("at most {}", kMostSignatures));
   return out;
 }
 
@@ -107,7 +106,7 @@ Result<Logo> read_logo(const std::filesystem::path& path) {
   std::error_code error;
   // It is read when the line is checked, and again for the page.
   if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
-    return fail(Errc::file, formatted("--logo: {} is no regular file", path.string()),
+    return fail(Errc::file, message("--logo: {} is no regular file", as_it_is(path.string())),
                 "a picture: PNG, JPEG or SVG");
   const auto content = read_file(path, kLargestLogo);
   if (!content) {
@@ -118,10 +117,11 @@ Result<Logo> read_logo(const std::filesystem::path& path) {
   }
   const auto kind = kind_of(*content);
   if (kind.type.empty())
-    return fail(Errc::file, formatted("--logo: {} is no PNG, JPEG or SVG", path.string()),
+    return fail(Errc::file, message("--logo: {} is no PNG, JPEG or SVG", as_it_is(path.string())),
                 "the content counts, not the name; an SVG is XML in UTF-8 whose root is <svg xmlns=\"…\">");
   if (!kind.whole)
-    return fail(Errc::file, formatted("--logo: {} is cut short", path.string()), "copy the picture again");
+    return fail(Errc::file, message("--logo: {} is cut short", as_it_is(path.string())),
+                "copy the picture again");
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(content->data());
   return Logo{std::string(kind.type), to_base64(ByteSpan(bytes, content->size()))};
 }

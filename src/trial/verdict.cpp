@@ -67,7 +67,7 @@ Error failure(const TestResult& result) {
       what += formatted("{}{}: {}", what.empty() ? "" : ". ", c.name, report::in_words(c));
   return drive_error(
       Errc::negative, result.node,
-      formatted("test {} failed: {}", result.test, what.empty() ? "nothing could be tested" : what));
+      message("test {} failed: {}", result.test, what.empty() ? "nothing could be tested" : what));
 }
 
 report::Record verdict_record(const show::Desk& desk, const TestResult& result, Show plot) {

@@ -47,10 +47,9 @@ class Tour {
       const auto count = std::min(kBetweenLooks, objects_.size() - at);
       ask(std::span(objects_).subspan(at, count));
       if (!out_.ended && !faulty && in_fault())
-        out_.ended =
-            drive_error(Errc::negative, node_,
-                        formatted("the drive went into fault after {} objects were read", at + count),
-                        "`fault show` says why; the file says what was read until then");
+        out_.ended = drive_error(Errc::negative, node_,
+                                 message("the drive went into fault after {} objects were read", at + count),
+                                 "`fault show` says why; the file says what was read until then");
     }
     if (out_.answers.empty() && out_.ended) return fail(*out_.ended);
     out_.verdict = session::judge_family(out_.identity, *profile_, families);
@@ -205,7 +204,7 @@ report::Record witness_document(const show::Desk& desk, const Witness& witness) 
           {"why", witness.verdict.why},
           {"write_only", witness.write_only},
           {"domains", witness.domains},
-          {"ended", witness.ended ? report::Value(witness.ended->message) : report::Value()},
+          {"ended", witness.ended ? report::Value(witness.ended->message.text()) : report::Value()},
           {"differences", differences_of(witness)},
           {"answers", answers_of(witness)}};
 }

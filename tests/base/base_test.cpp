@@ -120,11 +120,11 @@ TEST(Duration, OfABareNumberIsAskedForItsUnit) {
   for (const auto* text : {"2", "0", "250", "1.5", "0x10"}) {
     const auto time = read_duration(text);
     ASSERT_FALSE(time) << text;
-    EXPECT_EQ(time.error().message, "'" + std::string(text) + "': a time needs its unit");
-    EXPECT_NE(time.error().hint.find(std::string(text) + "ms"), std::string::npos);
+    EXPECT_EQ(time.error().message.text(), "'" + std::string(text) + "': a time needs its unit");
+    EXPECT_NE(time.error().hint.text().find(std::string(text) + "ms"), std::string::npos);
   }
   EXPECT_EQ(read_duration("2s").value(), 2s);
-  EXPECT_EQ(read_duration("soon").error().message, "'soon' is not a time");
+  EXPECT_EQ(read_duration("soon").error().message.text(), "'soon' is not a time");
 }
 
 TEST(Duration, IsReadWithItsUnit) {
@@ -193,14 +193,14 @@ TEST(Csv, ReadsTheCellsItWrites) {
   EXPECT_EQ(csv_cell("a, b"), "\"a, b\"");
   for (const std::string text : {"", "a,b", "say \"hi\"", "two\nlines", "\r"}) {
     const auto table = parse_csv("id,text\n1," + csv_cell(text) + "\n", "t.csv");
-    ASSERT_TRUE(table) << table.error().message;
+    ASSERT_TRUE(table) << table.error().message.text();
     EXPECT_EQ(table->rows.at(0).cells.at(1), text);
   }
 }
 
 TEST(Csv, KnowsQuotesLineEndsAndTheByteOrderMark) {
   const auto table = parse_csv("\xEF\xBB\xBFid,text\r\n1,\"a, \"\"b\"\"\nc\"\n\n2,\n", "t.csv");
-  ASSERT_TRUE(table) << table.error().message;
+  ASSERT_TRUE(table) << table.error().message.text();
   EXPECT_EQ(table->columns, (std::vector<std::string>{"id", "text"}));
   ASSERT_EQ(table->rows.size(), 2U);
   EXPECT_EQ(table->rows[0].cells[1], "a, \"b\"\nc");
@@ -221,7 +221,7 @@ TEST(Csv, ThatIsBrokenIsRefusedWithItsLine) {
   for (const auto& row : rows) {
     const auto table = parse_csv(row.first, "t.csv");
     ASSERT_FALSE(table) << row.first;
-    EXPECT_EQ(table.error().message, row.second);
+    EXPECT_EQ(table.error().message.text(), row.second);
     EXPECT_EQ(table.error().code, Errc::file);
   }
 }

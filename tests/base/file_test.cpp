@@ -134,8 +134,8 @@ TEST_F(WrittenFile, ThatIsAFullDeviceIsAnErrorThatSaysWhy) {
   const auto written = write_file_atomically(path, "x");
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, Errc::file);
-  EXPECT_NE(written.error().message.find("No space left"), std::string::npos);
-  EXPECT_NE(written.error().hint.find("make room"), std::string::npos);
+  EXPECT_NE(written.error().message.text().find("No space left"), std::string::npos);
+  EXPECT_NE(written.error().hint.text().find("make room"), std::string::npos);
   EXPECT_TRUE(fs::is_character_file(path));
 }
 
@@ -179,7 +179,7 @@ TEST_F(WrittenFile, BeyondTheLimitOfFilesStaysAsItWas) {
   ::setrlimit(RLIMIT_FSIZE, &before);
   std::signal(SIGXFSZ, handler);
   ASSERT_FALSE(written);
-  EXPECT_NE(written.error().message.find("File too large"), std::string::npos);
+  EXPECT_NE(written.error().message.text().find("File too large"), std::string::npos);
   EXPECT_EQ(read_file(path).value(), "old");
   EXPECT_EQ(files(), 1);
 }

@@ -58,8 +58,9 @@ TEST_F(FoundFile, OfAnotherUserIsRefusedWithTheWayToTrustIt) {
   give(file);
   const auto checked = check_found_file(file, kWay);
   ASSERT_TRUE(refused(checked));
-  EXPECT_EQ(checked.error().hint, kWay);
-  EXPECT_NE(checked.error().message.find("belongs to"), std::string::npos) << checked.error().message;
+  EXPECT_EQ(checked.error().hint.text(), kWay);
+  EXPECT_NE(checked.error().message.text().find("belongs to"), std::string::npos)
+      << checked.error().message.text();
   EXPECT_TRUE(check_found_file(file, kWay, kOther)) << "the owner of the program";
 }
 

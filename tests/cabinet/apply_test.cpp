@@ -18,7 +18,7 @@ TEST(CabinetApply, MakesFortyAxesAsTheFileSaysAndThenDoesNothing) {
   Fleet fleet(40, 3);
   EXPECT_GT(fleet.different(), 80U);
   const auto answer = fleet.apply();
-  ASSERT_TRUE(answer) << answer.error().message;
+  ASSERT_TRUE(answer) << answer.error().message.text();
   expect_no_errors(fleet);
   EXPECT_EQ(Fleet::results_of(*answer), std::vector<std::string>(40, "applied"));
   EXPECT_EQ(fleet.different(), 0U);
@@ -38,13 +38,13 @@ TEST(CabinetApply, MakesPdosAndHeartbeatsOfOperationalDrives) {
   const auto looks = fleet.look();
   bool state = false;
   for (const auto& look : looks) {
-    ASSERT_TRUE(look.plan) << look.axis->family << ": " << look.plan.error().message;
+    ASSERT_TRUE(look.plan) << look.axis->family << ": " << look.plan.error().message.text();
     EXPECT_GT(look.plan->different, 0U);
     for (const auto& need : look.plan->needs) state = state || need.kind == AxisNeed::Kind::state;
   }
   EXPECT_TRUE(state) << "no family changes PDOs outside Operational only";
   const auto answer = fleet.apply();
-  ASSERT_TRUE(answer) << answer.error().message;
+  ASSERT_TRUE(answer) << answer.error().message.text();
   expect_no_errors(fleet);
   EXPECT_EQ(Fleet::results_of(*answer), std::vector<std::string>(10, "applied"));
   EXPECT_EQ(fleet.different(), 0U);
@@ -82,14 +82,14 @@ TEST(CabinetApply, LeavesADriveAloneThatHasChangedSinceItWasLookedAt) {
   }();
   fleet.desk.audience = &meddler;
   const auto answer = fleet.apply();
-  ASSERT_TRUE(answer) << answer.error().message;
+  ASSERT_TRUE(answer) << answer.error().message.text();
   EXPECT_EQ(meddler.questions.size(), 1U);
   EXPECT_EQ(Fleet::results_of(*answer),
             (std::vector<std::string>{"applied", "applied", "not changed", "applied", "applied"}));
   ASSERT_EQ(fleet.desk.errors.size(), 1U);
   EXPECT_EQ(fleet.desk.errors[0].code, Errc::refused);
-  EXPECT_NE(fleet.desk.errors[0].message.find("axis3"), std::string::npos);
-  EXPECT_NE(fleet.desk.errors[0].message.find("changed since the plan was made"), std::string::npos);
+  EXPECT_NE(fleet.desk.errors[0].message.text().find("axis3"), std::string::npos);
+  EXPECT_NE(fleet.desk.errors[0].message.text().find("changed since the plan was made"), std::string::npos);
 }
 
 TEST(CabinetApply, WritesNothingUnlessSomebodyAgrees) {
@@ -104,7 +104,7 @@ TEST(CabinetApply, WritesNothingUnlessSomebodyAgrees) {
   fleet.desk.audience = nullptr;
   fleet.desk.dry_run = true;
   const auto frames = fleet.apply();
-  ASSERT_TRUE(frames) << frames.error().message;
+  ASSERT_TRUE(frames) << frames.error().message.text();
   EXPECT_NE(report::to_text(*frames).find("601#"), std::string::npos) << report::to_text(*frames);
   EXPECT_EQ(fleet.different(), before);
   EXPECT_TRUE(fs::is_empty(fleet.folder()));
@@ -119,7 +119,7 @@ TEST(CabinetApply, LeavesAnEnergisedDriveAloneAndThePlanSaysSo) {
     (void)session.wait([] { return false; }, session.now() + 1s);
   }
   const auto look = fleet.look()[2];
-  ASSERT_TRUE(look.plan) << look.plan.error().message;
+  ASSERT_TRUE(look.plan) << look.plan.error().message.text();
   ASSERT_FALSE(look.plan->needs.empty());
   EXPECT_EQ(look.plan->needs.back().kind, AxisNeed::Kind::power);
   ApplyOptions all;
@@ -161,7 +161,7 @@ TEST(CabinetApply, RefusesTwoAxesThatWouldSendWithOneCanId) {
   const auto looks = fleet.look();
   EXPECT_NE(looks[1].plan.has_value(), looks[4].plan.has_value()) << "one of them";
   for (const auto& look : looks)
-    EXPECT_TRUE(look.plan || look.plan.error().message.find("0x2F0") != std::string::npos);
+    EXPECT_TRUE(look.plan || look.plan.error().message.text().find("0x2F0") != std::string::npos);
 }
 
 TEST(CabinetApply, OfFortyAxesTakesAsLongAsOfTheSlowest) {

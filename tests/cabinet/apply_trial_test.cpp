@@ -86,8 +86,8 @@ int put_back_at_every_step(const ApplyOptions& options, int BusTrouble::*kind) {
         EXPECT_EQ(now[axis], world.before[axis]);
         EXPECT_TRUE(std::any_of(
             world.fleet.desk.errors.begin(), world.fleet.desk.errors.end(), [&](const Error& error) {
-              return error.message.find(world.fleet.cabinet.axes[axis].name) != std::string::npos &&
-                     error.message.find("its flash was not put back") != std::string::npos;
+              return error.message.text().find(world.fleet.cabinet.axes[axis].name) != std::string::npos &&
+                     error.message.text().find("its flash was not put back") != std::string::npos;
             }));
       } else if (!same) {
         EXPECT_TRUE(result.starts_with("applied")) << "nobody is told";

@@ -33,7 +33,7 @@ class TroubledFleet {
   bool is_as_before(std::size_t axis) { return fleet.held(axis, wanted[axis]) == before[axis]; }
   bool is_named(std::size_t axis) const {
     return std::any_of(fleet.desk.errors.begin(), fleet.desk.errors.end(), [&](const Error& error) {
-      return error.message.find(fleet.cabinet.axes[axis].name) != std::string::npos;
+      return error.message.text().find(fleet.cabinet.axes[axis].name) != std::string::npos;
     });
   }
   bool is_cut_off(std::size_t axis) const {
@@ -51,12 +51,12 @@ class TroubledFleet {
     resume.resume = true;
     if (any_cut_off()) {
       const auto resumed = fleet.apply(resume);
-      ASSERT_TRUE(resumed) << resumed.error().message;
-      for (const auto& error : fleet.desk.errors) ADD_FAILURE() << error.message;
+      ASSERT_TRUE(resumed) << resumed.error().message.text();
+      for (const auto& error : fleet.desk.errors) ADD_FAILURE() << error.message.text();
     }
     EXPECT_FALSE(any_cut_off());
     ASSERT_TRUE(fleet.apply());
-    for (const auto& error : fleet.desk.errors) ADD_FAILURE() << error.message;
+    for (const auto& error : fleet.desk.errors) ADD_FAILURE() << error.message.text();
     EXPECT_EQ(fleet.different(), 0U);
   }
 
@@ -233,9 +233,10 @@ TEST(CabinetTrouble, AnApplyThatIsKilledIsNotGoneOnWithInTheDriveThatReplacesIts
   resume.resume = true;
   (void)fleet.apply(resume);
   ASSERT_EQ(fleet.desk.errors.size(), 1U);
-  EXPECT_NE(fleet.desk.errors[0].message.find("was of another drive: its serial number (1018h:04) differs"),
-            std::string::npos)
-      << fleet.desk.errors[0].message;
+  EXPECT_NE(
+      fleet.desk.errors[0].message.text().find("was of another drive: its serial number (1018h:04) differs"),
+      std::string::npos)
+      << fleet.desk.errors[0].message.text();
   EXPECT_EQ(fleet.held(0, world.wanted[0]), held);
   EXPECT_TRUE(world.is_cut_off(0));
   // Without it the new drive gets what the file says, and the old one's notes stay.

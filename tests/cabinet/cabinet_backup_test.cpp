@@ -47,7 +47,7 @@ class Saved {
   std::vector<std::string> compare(const fs::path& a, const fs::path& b) {
     fleet.desk.errors.clear();
     const auto answer = compare_cabinets(fleet.desk, a, b, load);
-    EXPECT_TRUE(answer) << answer.error().message;
+    EXPECT_TRUE(answer) << answer.error().message.text();
     std::vector<std::string> out;
     if (!answer) return out;
     const auto* table = report::find(*answer, "differences")->table();
@@ -62,7 +62,7 @@ class Saved {
 TEST(CabinetBackup, IsAFolderWithAllAxesAndTheFile) {
   Saved saved;
   const auto answer = saved.save();
-  ASSERT_TRUE(answer) << answer.error().message;
+  ASSERT_TRUE(answer) << answer.error().message.text();
   ASSERT_TRUE(saved.save());
   const auto folders = saved.folders();
   ASSERT_EQ(folders.size(), 2U) << "two in one second";
@@ -70,7 +70,7 @@ TEST(CabinetBackup, IsAFolderWithAllAxesAndTheFile) {
   EXPECT_EQ(*read_file(folders[0] / "cabinet.toml"), kTwoAxes);
   for (std::size_t i = 0; i < saved.fleet.size(); ++i) {
     const auto backup = settings::read_backup(folders[0] / fmt::format("axis{}.json", i + 1));
-    ASSERT_TRUE(backup) << backup.error().message;
+    ASSERT_TRUE(backup) << backup.error().message.text();
     EXPECT_EQ(backup->family, saved.fleet.cabinet.axes[i].family);
     EXPECT_GT(backup->entries.size(), 20U);
   }
@@ -81,7 +81,7 @@ TEST(CabinetBackup, LeavesOutAnAxisThatDoesNotAnswerAndSaysSo) {
   saved.fleet.drive(2).wire_faults().silent = true;
   ASSERT_TRUE(saved.save());
   ASSERT_EQ(saved.fleet.desk.errors.size(), 1U);
-  EXPECT_NE(saved.fleet.desk.errors[0].message.find("axis3"), std::string::npos);
+  EXPECT_NE(saved.fleet.desk.errors[0].message.text().find("axis3"), std::string::npos);
   ASSERT_EQ(saved.folders().size(), 1U);
   EXPECT_FALSE(fs::exists(saved.folders()[0] / "axis3.json"));
   EXPECT_TRUE(fs::exists(saved.folders()[0] / "axis4.json"));
@@ -121,7 +121,7 @@ TEST(CabinetDiff, NamesWhatDiffersBetweenTwoFilesHoweverItIsWritten) {
   fs::create_directory(empty);
   const auto none = compare_cabinets(saved.fleet.desk, empty, other, load);
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().message, empty.string() + " contains no backup");
+  EXPECT_EQ(none.error().message.text(), empty.string() + " contains no backup");
 }
 
 TEST(CabinetDiff, HoldsAFileAgainstABackup) {

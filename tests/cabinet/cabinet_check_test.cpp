@@ -24,11 +24,11 @@ Result<const drive::Profile*> checked_family(const std::string& family) {
 /// The errors of a cabinet, one a line; empty when there are none.
 std::string found(std::string_view toml) {
   const auto cabinet = parse_cabinet(toml, "c.toml");
-  EXPECT_TRUE(cabinet) << cabinet.error().message;
+  EXPECT_TRUE(cabinet) << cabinet.error().message.text();
   std::string out;
   for (const auto& error : check_cabinet(*cabinet, checked_family).errors) {
     EXPECT_EQ(error.code, Errc::file);
-    out += error.message + "\n";
+    out += error.message.text() + "\n";
   }
   return out;
 }
@@ -113,8 +113,8 @@ TEST(CabinetCheck, TellsOfObjectsThatTheFamilyDoesNotList) {
   const auto findings = check_cabinet(*cabinet, checked_family);
   EXPECT_TRUE(findings.errors.empty());
   EXPECT_EQ(findings.notices,
-            std::vector<std::string>{"c.toml:6:16: axis a1: 0x2FFF is not in the data of sv2: its size and "
-                                     "limits are asked of the drive"});
+            std::vector<Message>{"c.toml:6:16: axis a1: 0x2FFF is not in the data of sv2: its size and "
+                                 "limits are asked of the drive"});
 }
 
 TEST(CabinetCheck, TellsOnceWhatManyAxesShare) {

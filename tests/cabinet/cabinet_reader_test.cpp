@@ -51,7 +51,7 @@ std::string refused(std::string_view toml) {
   const auto cabinet = parse_cabinet(toml, "cabinet.toml");
   if (cabinet) return "accepted";
   EXPECT_EQ(cabinet.error().code, Errc::file);
-  return cabinet.error().message + "|" + cabinet.error().hint;
+  return cabinet.error().message.text() + "|" + cabinet.error().hint.text();
 }
 
 std::string with_axis(std::string_view lines) {
@@ -66,7 +66,7 @@ const Setting* setting(const Axis& axis, std::string_view name) {
 
 TEST(CabinetFile, GivesAnAxisWhatItsGroupAndFamilySayWhereItSaysNothing) {
   const auto cabinet = parse_cabinet(kTwoBuses, "cabinet.toml");
-  ASSERT_TRUE(cabinet) << cabinet.error().message;
+  ASSERT_TRUE(cabinet) << cabinet.error().message.text();
   ASSERT_EQ(cabinet->axes.size(), 5U);
   const auto& lift = *cabinet->axis("lift");
   EXPECT_EQ(lift.bus, "main");
@@ -91,7 +91,7 @@ TEST(CabinetFile, GivesAnAxisWhatItsGroupAndFamilySayWhereItSaysNothing) {
 TEST(CabinetFile, MakesFortyAxesOfOneTable) {
   const auto cabinet = parse_cabinet(
       "[bus.main]\nurl = \"can0\"\n[axis.\"feeder{01-40}\"]\nnode = \"1-40\"\nfamily = \"ts\"\n", "c.toml");
-  ASSERT_TRUE(cabinet) << cabinet.error().message;
+  ASSERT_TRUE(cabinet) << cabinet.error().message.text();
   ASSERT_EQ(cabinet->axes.size(), 40U);
   EXPECT_EQ(cabinet->axes.front().name, "feeder01");
   EXPECT_EQ(cabinet->axes.back().name, "feeder40");
@@ -104,7 +104,7 @@ TEST(CabinetFile, SelectsAxesByNameGroupAndAllInTheOrderOfTheFile) {
   const auto names = [&](std::string_view list) {
     std::string out;
     const auto chosen = cabinet->select(list);
-    if (!chosen) return chosen.error().message + "|" + chosen.error().hint;
+    if (!chosen) return chosen.error().message.text() + "|" + chosen.error().hint.text();
     for (const auto* axis : *chosen) out += axis->name + " ";
     return out;
   };

@@ -21,7 +21,7 @@ class CabinetDisplaced : public testing::Test {
   Result<report::Value> apply() { return fleet.apply(options); }
   std::string told() const {
     std::string out;
-    for (const auto& error : fleet.desk.errors) out += error.message + "; " + error.hint + "\n";
+    for (const auto& error : fleet.desk.errors) out += error.message.text() + "; " + error.hint.text() + "\n";
     return out;
   }
   std::vector<drive::Family> families = drive::find_families(drive_data());
@@ -39,15 +39,15 @@ TEST_F(CabinetDisplaced, APlanSaysWhereItIsAndWritesNothing) {
   EXPECT_EQ(found[0].at, 1);
   ASSERT_FALSE(looks[0].plan);
   EXPECT_EQ(looks[0].plan.error().code, Errc::negative);
-  EXPECT_NE(looks[0].plan.error().message.find("(serial number 16 (0x00000010)) is at node-ID 1"),
+  EXPECT_NE(looks[0].plan.error().message.text().find("(serial number 16 (0x00000010)) is at node-ID 1"),
             std::string::npos)
-      << looks[0].plan.error().message;
+      << looks[0].plan.error().message.text();
   EXPECT_EQ(fleet.drive(0).node(), 1);
 }
 
 TEST_F(CabinetDisplaced, AnApplyGivesItItsNodeAndThenItsValues) {
   const auto done = apply();
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   EXPECT_EQ(told(), "");
   EXPECT_EQ(Fleet::results_of(*done), std::vector<std::string>(6, "applied"));
   EXPECT_EQ(fleet.drive(0).node(), 77);
@@ -68,7 +68,8 @@ TEST_F(CabinetDisplaced, AllOrNothingMovesNobody) {
   options.all_or_nothing = true;
   const auto refused = apply();
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("is at node-ID 1"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.text().find("is at node-ID 1"), std::string::npos)
+      << refused.error().message.text();
   EXPECT_EQ(fleet.drive(0).node(), 1);
 }
 

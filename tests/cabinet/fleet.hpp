@@ -141,7 +141,7 @@ class Fleet {
     std::size_t out = 0;
     for (const auto& look : look(choice)) {
       EXPECT_TRUE(look.plan) << look.axis->name << " (" << look.axis->family
-                             << "): " << look.plan.error().message;
+                             << "): " << look.plan.error().message.text();
       if (look.plan) out += look.plan->different;
     }
     return out;

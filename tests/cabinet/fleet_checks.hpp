@@ -20,7 +20,8 @@ inline std::set<std::string> objects_of(const report::Value& table) {
 }
 
 inline void expect_no_errors(const Fleet& fleet) {
-  for (const auto& error : fleet.desk.errors) ADD_FAILURE() << error.message << "; " << error.hint;
+  for (const auto& error : fleet.desk.errors)
+    ADD_FAILURE() << error.message.text() << "; " << error.hint.text();
 }
 
 inline session::Values wanted_of(const PlannedAxis& look) {

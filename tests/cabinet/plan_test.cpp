@@ -50,7 +50,7 @@ TEST(CabinetPlan, ListsApartWhatIsNeitherInTheFileNorFromTheFactory) {
   Fleet fleet(5);
   ASSERT_TRUE(fleet.apply());
   for (const auto& look : fleet.look({.unlisted = true})) {
-    ASSERT_TRUE(look.plan) << look.plan.error().message;
+    ASSERT_TRUE(look.plan) << look.plan.error().message.text();
     EXPECT_EQ(look.plan->unlisted_count, 0U)
         << look.axis->family << " " << report::to_text(look.plan->unlisted);
   }
@@ -76,7 +76,7 @@ TEST(CabinetPlan, ListsApartWhatIsNeitherInTheFileNorFromTheFactory) {
 TEST(CabinetPlan, OfAGroupLeavesOtherFamiliesAlone) {
   Fleet fleet(5);
   for (const auto& look : fleet.look({.only = "gain"})) {
-    ASSERT_TRUE(look.plan) << look.plan.error().message;
+    ASSERT_TRUE(look.plan) << look.plan.error().message.text();
     const auto& family = look.axis->family;
     if (family == "gsd600") {
       EXPECT_GT(look.plan->different, 0U);
@@ -95,11 +95,12 @@ TEST(CabinetPlan, RefusesAnotherDriveAndTellsBothSerialNumbers) {
     const auto look = fleet.look()[i];
     ASSERT_FALSE(look.plan) << look.axis->family;
     EXPECT_EQ(look.plan.error().code, Errc::refused);
-    EXPECT_NE(look.plan.error().message.find("4711"), std::string::npos) << look.plan.error().message;
+    EXPECT_NE(look.plan.error().message.text().find("4711"), std::string::npos)
+        << look.plan.error().message.text();
     const auto found = fleet.session(i).upload(fleet.cabinet.axes[i].node, {0x1018, 4});
     if (!found) continue;
     told = true;
-    EXPECT_NE(look.plan.error().message.find(fmt::format("{}", load_le(*found))), std::string::npos);
+    EXPECT_NE(look.plan.error().message.text().find(fmt::format("{}", load_le(*found))), std::string::npos);
     fleet.cabinet.axes[i].serial = static_cast<std::uint32_t>(load_le(*found));
     EXPECT_TRUE(fleet.look()[i].plan);
   }
@@ -133,7 +134,7 @@ TEST(CabinetPlan, AStoredBitrateThatIsNotThatOfTheBusIsWritten) {
     const auto others = with_another_bitrate(fleet, rate);
     written += others.size();
     for (const auto& look : fleet.look()) {
-      ASSERT_TRUE(look.plan) << look.plan.error().message;
+      ASSERT_TRUE(look.plan) << look.plan.error().message.text();
       EXPECT_EQ(look.plan->different, others.count(look.axis->name)) << look.axis->family << " " << rate;
       for (const auto& need : look.plan->needs) EXPECT_NE(need.kind, AxisNeed::Kind::restart);
     }
@@ -160,7 +161,7 @@ TEST(CabinetPlan, NoBitrateIsWrittenThatTheBusMayNotRunAt) {
     for (const auto& look : fleet.look({.unlisted = true})) {
       const auto told = std::count_if(
           look.notices.begin(), look.notices.end(),
-          [&, &text = words](const auto& notice) { return notice.find(text) != std::string::npos; });
+          [&, &text = words](const auto& notice) { return notice.text().find(text) != std::string::npos; });
       EXPECT_EQ(told, static_cast<long>(others.count(look.axis->name))) << look.axis->family << " " << url;
       EXPECT_EQ(look.plan->different, 0U);
     }
@@ -181,7 +182,7 @@ TEST(CabinetPlan, ANodeIdThatIsStoredForTheNextStartIsPutBack) {
     const auto size = fleet.drive(i).value(*object).size();
     if (!fleet.session(i).download(axis.node, *object, store_le(100, size))) continue;  // Behind a password.
     const auto look = fleet.look()[i];
-    ASSERT_TRUE(look.plan) << look.plan.error().message;
+    ASSERT_TRUE(look.plan) << look.plan.error().message.text();
     EXPECT_EQ(objects_of(look.plan->differences), std::set<std::string>{to_string(*object)});
     ++moved;
   }
@@ -205,7 +206,7 @@ TEST(CabinetPlan, TellsWhatTheFileSaysWrongWithItsLine) {
   const auto good = parameters;
   const auto refusal = [&] {
     const auto look = fleet.look()[2];
-    return look.plan ? std::string("taken") : look.plan.error().message;
+    return look.plan ? std::string("taken") : look.plan.error().message.text();
   };
   parameters = {{"Pn9999", "1", {7, 1}}};
   EXPECT_NE(refusal().find("cabinet.toml:7:1: axis axis3: "), std::string::npos) << refusal();
@@ -217,8 +218,9 @@ TEST(CabinetPlan, TellsWhatTheFileSaysWrongWithItsLine) {
   EXPECT_NE(refusal().find("not a setting"), std::string::npos) << refusal();
   fleet.cabinet.axes[3].heartbeat = 100ms;
   fleet.cabinet.axes[3].heartbeat_at = {33, 4};
-  EXPECT_NE(fleet.look()[3].plan.error().message.find("cabinet.toml:33:4: axis axis4: sv2 has no heartbeat"),
-            std::string::npos);
+  EXPECT_NE(
+      fleet.look()[3].plan.error().message.text().find("cabinet.toml:33:4: axis axis4: sv2 has no heartbeat"),
+      std::string::npos);
   parameters = good;
   EXPECT_EQ(refusal(), "taken");
 }

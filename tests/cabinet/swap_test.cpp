@@ -26,8 +26,8 @@ Result<report::Value> swap(Fleet& fleet, std::size_t axis, std::optional<std::ui
 
 std::string told(const Fleet& fleet) {
   std::string out;
-  for (const auto& notice : fleet.desk.notices) out += notice + "\n";
-  for (const auto& error : fleet.desk.errors) out += "error: " + error.message + "\n";
+  for (const auto& notice : fleet.desk.notices) out += notice.text() + "\n";
+  for (const auto& error : fleet.desk.errors) out += "error: " + error.message.text() + "\n";
   return out;
 }
 
@@ -47,7 +47,7 @@ TEST_F(CabinetSwap, GivesTheNewDriveTheNodeAndTheValuesOfTheAxis) {
   for (std::size_t i = 0; i < 3; ++i) {
     const auto from = static_cast<std::uint8_t>(i + 1);
     const auto done = swap(fleet, i, from);
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
     EXPECT_TRUE(fleet.desk.errors.empty()) << told(fleet);
     EXPECT_EQ(fleet.drive(i).node(), from + 40);
     EXPECT_NE(told(fleet).find("home position"), std::string::npos) << told(fleet);
@@ -65,21 +65,21 @@ TEST_F(CabinetSwap, ADriveThatIsProvenToBeOfAnotherFamilyIsNotTakenForTheOneOfIt
   for (auto& axis : fleet.cabinet.axes) axis.serial.reset();
   fleet.cabinet.axes[2].node = 1;  // The gsd600 of the file; a da200 is there.
   const auto done = swap(fleet, 0, 1);
-  EXPECT_TRUE(done) << done.error().message;
+  EXPECT_TRUE(done) << done.error().message.text();
   EXPECT_EQ(fleet.drive(0).node(), 41);
 }
 
 TEST_F(CabinetSwap, WhereNobodyIsBothNodesAreNamed) {
   const auto done = swap(fleet, 0, 9);
   ASSERT_FALSE(done);
-  EXPECT_NE(done.error().message.find("neither node-ID 9 nor node-ID 41 answers"), std::string::npos)
-      << done.error().message;
+  EXPECT_NE(done.error().message.text().find("neither node-ID 9 nor node-ID 41 answers"), std::string::npos)
+      << done.error().message.text();
 }
 
 TEST_F(CabinetSwap, DoneASecondTimeMovesNobody) {
   ASSERT_TRUE(swap(fleet, 0, 1));
   const auto again = swap(fleet, 0, 1);
-  ASSERT_TRUE(again) << again.error().message;
+  ASSERT_TRUE(again) << again.error().message.text();
   EXPECT_TRUE(fleet.desk.errors.empty()) << told(fleet);
   EXPECT_EQ(fleet.drive(0).node(), 41);
 }
@@ -92,8 +92,8 @@ TEST_F(CabinetSwap, CutOffBehindTheMoveIsRepeated) {
     (void)swap(other, 0, 1);
     other.heal();
     auto done = swap(other, 0, 1);
-    if (!done && done.error().hint.find("resume") != std::string::npos) continue;  // As apply.
-    ASSERT_TRUE(done) << cancel_at << ": " << done.error().message;
+    if (!done && done.error().hint.text().find("resume") != std::string::npos) continue;  // As apply.
+    ASSERT_TRUE(done) << cancel_at << ": " << done.error().message.text();
     if (other.drive(0).node() == 1) other.command("8100");
     EXPECT_EQ(other.drive(0).node(), 41) << cancel_at;
     EXPECT_EQ(other.different(), 0U) << cancel_at;
@@ -120,7 +120,8 @@ TEST_F(CabinetSwap, RefusesADriveThatHasAPlaceInTheFileAlready) {
   fleet.cabinet.axes[1].serial = 16;
   const auto known = swap(fleet, 0, 1);
   ASSERT_FALSE(known);
-  EXPECT_NE(known.error().message.find("that of axis axis2"), std::string::npos) << known.error().message;
+  EXPECT_NE(known.error().message.text().find("that of axis axis2"), std::string::npos)
+      << known.error().message.text();
   fleet.cabinet.axes[1].serial.reset();
   fleet.cabinet.axes[1].node = 1;
   fleet.cabinet.axes[1].family = "da200";
@@ -164,7 +165,7 @@ TEST_F(CabinetSwap, RestoresAllThatWasSavedWhereThereIsABackup) {
                                     settings::backup_text(desk, settings::make_backup(desk, *snapshot))));
   ASSERT_TRUE(session.download(3, object, before));
   const auto done = swap(fleet, 2, 3, fleet.folder());
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   EXPECT_TRUE(fleet.desk.errors.empty()) << told(fleet);
   EXPECT_EQ(fleet.drive(2).node(), 43);
   EXPECT_EQ(fleet.drive(2).value(object), saved) << "not in the file, and in the backup";

@@ -72,7 +72,7 @@ TEST(ByteWindow, KeepsNoMoreOfALongRecordingThanItLooksAt) {
 
 TEST(ByteWindow, SaysWhyItCannotRead) {
   EXPECT_EQ(open_recording("/nowhere/at/all").error().code, Errc::file);
-  EXPECT_EQ(open_recording("/tmp").error().message, "cannot open /tmp: Is a directory");
+  EXPECT_EQ(open_recording("/tmp").error().message.text(), "cannot open /tmp: Is a directory");
 }
 
 }  // namespace

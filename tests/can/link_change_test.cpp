@@ -114,12 +114,12 @@ TEST(LinkRefusal, SaysInWordsWhatTheKernelMeans) {
   const LinkChange bits{.up = true, .bitrate = 777'777};
   const auto no_right = link_refusal("can0", bits, controller(), EPERM, {});
   EXPECT_EQ(no_right.message, "can0 was not changed: this user may not change interfaces");
-  EXPECT_NE(no_right.hint.find("sudo"), std::string::npos);
-  EXPECT_NE(no_right.hint.find("setcap cap_net_admin+ep"), std::string::npos);
+  EXPECT_NE(no_right.hint.text().find("sudo"), std::string::npos);
+  EXPECT_NE(no_right.hint.text().find("setcap cap_net_admin+ep"), std::string::npos);
   EXPECT_EQ(link_refusal("can0", bits, controller(), EDOM, {}).message,
             "can0 cannot make 777777 bit/s from its clock of 8 MHz");
   EXPECT_EQ(link_refusal("can0", bits, controller(), EINVAL, {}).code, Errc::usage);
-  EXPECT_NE(link_refusal("can0", bits, controller(), EBUSY, {}).message.find("can0 is up"),
+  EXPECT_NE(link_refusal("can0", bits, controller(), EBUSY, {}).message.text().find("can0 is up"),
             std::string::npos);
   auto fixed = controller();
   fixed.bitrates = {250'000, 500'000};
@@ -158,7 +158,7 @@ TEST(LinkReceivers, AreCountedBySocketNotByEntry) {
 TEST(LinkOpen, RefusesWhatIsNoCanInterface) {
   EXPECT_EQ(open_link("no/name").error().code, Errc::usage);
   EXPECT_EQ(open_link("no-such-can").error().code, Errc::bus);
-  EXPECT_EQ(open_link("lo").error().message, "lo is not a CAN interface");
+  EXPECT_EQ(open_link("lo").error().message.text(), "lo is not a CAN interface");
 }
 
 /// An interface that remembers what was done to it.

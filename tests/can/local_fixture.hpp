@@ -42,7 +42,7 @@ class LocalBusTest : public testing::Test {
 
   static std::unique_ptr<Bus> join(const char* name = "demo", Duration patience = std::chrono::seconds(20)) {
     auto bus = open_local(name, patience);
-    EXPECT_TRUE(bus) << bus.error().message;
+    EXPECT_TRUE(bus) << bus.error().message.text();
     return std::move(*bus);
   }
 

@@ -80,7 +80,8 @@ TEST_F(LocalBusTest, RefusesADirectoryThatOthersCanEnter) {
   const auto bus = open_local("demo");
   ASSERT_FALSE(bus);
   EXPECT_EQ(bus.error().code, Errc::bus);
-  EXPECT_NE(bus.error().message.find("other users have access"), std::string::npos) << bus.error().message;
+  EXPECT_NE(bus.error().message.text().find("other users have access"), std::string::npos)
+      << bus.error().message.text();
 }
 
 TEST_F(LocalBusTest, WorksUnderAPathThatIsLongerThanASocketAddress) {
@@ -122,13 +123,13 @@ TEST_F(LocalBusTest, SaysWhoDoesNotReadAndStillServesTheOthers) {
   const auto reader = join();
   const auto sleeper = join();
   std::uint32_t count = 0;  // That the sleeper has room for.
-  std::vector<std::string> told;
+  std::vector<Message> told;
   for (; told.empty() && count < 1'000; told = sender->take_notices(), ++count) {
     ASSERT_TRUE(sender->send(numbered(0x181, count)));
     ASSERT_EQ(now_at(*reader), numbered(0x181, count)) << "the others get every frame";
   }
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_NE(told.front().find(std::to_string(::getpid())), std::string::npos) << told.front();
+  EXPECT_NE(told.front().text().find(std::to_string(::getpid())), std::string::npos) << told.front().text();
   --count;
   ASSERT_TRUE(sender->send(frame_of("100#")));
   EXPECT_EQ(now_at(*reader), frame_of("100#"));
@@ -146,7 +147,7 @@ TEST_F(LocalBusTest, SaysThatTheBusIsHeldByAProcessThatHangs) {
   const auto sent = bus->send(frame_of("080#"));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().code, Errc::bus);
-  EXPECT_NE(sent.error().hint.find("fuser"), std::string::npos);
+  EXPECT_NE(sent.error().hint.text().find("fuser"), std::string::npos);
   const auto joined = open_local("demo", milliseconds(3));
   ASSERT_FALSE(joined);
   EXPECT_EQ(joined.error().code, Errc::bus);

@@ -188,7 +188,7 @@ TEST(LogFormats, WhatNobodyCanTellIsAsked) {
 TEST(LogFormats, ColumnsThatTheUserNames) {
   const auto read = [](std::string_view columns, std::string_view text) {
     const auto choice = ColumnChoice::parse(columns);
-    if (!choice) return Frames{choice.error().message};
+    if (!choice) return Frames{choice.error().message.text()};
     Frames out;
     (void)for_each_frame(text, [&](const LogFrame& line) { return out.push_back(to_string(line)), true; },
                          {.columns = &*choice});

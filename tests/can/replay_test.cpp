@@ -16,7 +16,7 @@ class ReplayTest : public testing::Test {
   void record(std::string_view text) {
     std::ofstream(path) << text;
     auto opened = open_replay(path.string());
-    ASSERT_TRUE(opened) << opened.error().message;
+    ASSERT_TRUE(opened) << opened.error().message.text();
     bus = std::move(*opened);
   }
   ~ReplayTest() override { std::filesystem::remove(path); }
@@ -73,7 +73,7 @@ TEST_F(ReplayTest, RefusesWhatWasNotSent) {
   const auto again = bus->send(parse_frame("601#4041600000000000").value());
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().code, Errc::bus);
-  EXPECT_NE(again.error().message.find("601#4041600000000000 is not in the rest of the recording"),
+  EXPECT_NE(again.error().message.text().find("601#4041600000000000 is not in the rest of the recording"),
             std::string::npos);
 }
 
@@ -93,11 +93,12 @@ TEST_F(ReplayTest, OfSeveralBusesAnswersFromTheOneThatIsNamed) {
   const auto refused = open_replay(path.string());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::usage);
-  EXPECT_NE(refused.error().message.find("frames of several buses: can0 (2), can1 (2)"), std::string::npos);
-  EXPECT_NE(refused.error().hint.find("?channel=can0"), std::string::npos);
+  EXPECT_NE(refused.error().message.text().find("frames of several buses: can0 (2), can1 (2)"),
+            std::string::npos);
+  EXPECT_NE(refused.error().hint.text().find("?channel=can0"), std::string::npos);
   EXPECT_EQ(open_replay(path.string() + "?channel=can7").error().code, Errc::usage);
   auto opened = open_replay(path.string() + "?channel=can1");
-  ASSERT_TRUE(opened) << opened.error().message;
+  ASSERT_TRUE(opened) << opened.error().message.text();
   bus = std::move(*opened);
   EXPECT_TRUE(send("601#4000100000000000"));
   EXPECT_EQ(next(), "581#4300100034120000");

@@ -123,14 +123,14 @@ inline Frame slcan_frame(const char* text) { return parse_frame(text).value(); }
 /// Null where it is not opened, which fails the test.
 inline std::unique_ptr<Bus> open_at(const ScriptedAdapter& adapter) {
   auto bus = open_slcan(adapter.place());
-  EXPECT_TRUE(bus) << bus.error().message;
+  EXPECT_TRUE(bus) << bus.error().message.text();
   return bus ? std::move(*bus) : nullptr;
 }
 
 /// What comes within two seconds.
 inline std::optional<Frame> next_frame(Bus& bus) {
   const auto frame = bus.receive(bus.now() + std::chrono::seconds(2));
-  EXPECT_TRUE(frame) << frame.error().message;
+  EXPECT_TRUE(frame) << frame.error().message.text();
   return frame ? *frame : std::nullopt;
 }
 

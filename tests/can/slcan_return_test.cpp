@@ -43,7 +43,7 @@ TEST(Slcan, AnAdapterThatIsPulledInTheMiddleOfALineIsToldAtOnce) {
   const auto lost = bus->receive(bus->now() + seconds(5));
   ASSERT_FALSE(lost);
   EXPECT_EQ(lost.error().code, Errc::bus);
-  EXPECT_NE(lost.error().message.find(adapter.path() + " is gone"), std::string::npos);
+  EXPECT_NE(lost.error().message.text().find(adapter.path() + " is gone"), std::string::npos);
   EXPECT_LT(bus->now() - begin, seconds(1));
   EXPECT_FALSE(bus->send(slcan_frame("601#00")));
   EXPECT_EQ(bus->poll_fd(), -1) << "a port that is held keeps its number";

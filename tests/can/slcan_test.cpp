@@ -21,7 +21,8 @@ using std::chrono::seconds;
 std::string refusal(const std::string& place) {
   const auto bus = open_slcan(place);
   return bus ? "opened"
-             : std::string(name(bus.error().code)) + ": " + bus.error().message + "; " + bus.error().hint;
+             : std::string(name(bus.error().code)) + ": " + bus.error().message.text() + "; " +
+                   bus.error().hint.text();
 }
 
 TEST(SlcanPlaceText, IsPortBitrateAndPerhapsBaudRate) {
@@ -37,7 +38,8 @@ TEST(SlcanPlaceText, IsPortBitrateAndPerhapsBaudRate) {
     ASSERT_FALSE(place) << text;
     EXPECT_EQ(place.error().code, Errc::usage) << text;
   }
-  EXPECT_NE(parse_slcan_place("/dev/ttyACM0@83k").error().hint.find("10k, 20k, 50k"), std::string::npos);
+  EXPECT_NE(parse_slcan_place("/dev/ttyACM0@83k").error().hint.text().find("10k, 20k, 50k"),
+            std::string::npos);
 }
 
 TEST(Slcan, OpensSendsReceivesAndCloses) {
@@ -92,7 +94,7 @@ TEST(Slcan, AFrameThatIsRefusedIsOfferedAgainAndInTheEndToldNotSent) {
   const auto sent = bus->send(slcan_frame("000#0100"));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().code, Errc::bus);
-  EXPECT_NE(sent.error().message.find("its transmit queue remains full"), std::string::npos);
+  EXPECT_NE(sent.error().message.text().find("its transmit queue remains full"), std::string::npos);
 }
 
 TEST(Slcan, ALostAcknowledgeIsToldAndTheBusGoesOn) {
@@ -105,7 +107,7 @@ TEST(Slcan, ALostAcknowledgeIsToldAndTheBusGoesOn) {
   EXPECT_EQ(frames, 3) << "nothing is sent twice";
   const auto notices = bus->take_notices();
   ASSERT_EQ(notices.size(), 1U);
-  EXPECT_NE(notices.front().find("1 frame was not acknowledged by the adapter"), std::string::npos);
+  EXPECT_NE(notices.front().text().find("1 frame was not acknowledged by the adapter"), std::string::npos);
 }
 
 TEST(Slcan, AnAdapterWhoseFirstAcknowledgeIsLostIsWaitedForAgain) {
@@ -121,7 +123,7 @@ TEST(Slcan, AnAdapterWhoseFirstAcknowledgeIsLostIsWaitedForAgain) {
   (void)bus->receive(bus->now() + milliseconds(100));
   const auto notices = bus->take_notices();
   ASSERT_EQ(notices.size(), 1U);
-  EXPECT_NE(notices.front().find("1 frame was not acknowledged by the adapter"), std::string::npos);
+  EXPECT_NE(notices.front().text().find("1 frame was not acknowledged by the adapter"), std::string::npos);
   adapter.set_script(
       [](const std::string& line) { return line.front() == 't' ? "\a" : ScriptedAdapter::good(line); });
   EXPECT_FALSE(bus->send(slcan_frame("601#00"))) << "a refusal is waited for";
@@ -135,7 +137,7 @@ TEST(Slcan, AnAdapterThatFallsSilentIsTold) {
   const auto sent = bus->send(slcan_frame("601#00"));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().code, Errc::bus);
-  EXPECT_NE(sent.error().message.find("does not answer any more"), std::string::npos);
+  EXPECT_NE(sent.error().message.text().find("does not answer any more"), std::string::npos);
   EXPECT_FALSE(bus->receive(bus->now())) << "until it is recovered";
   adapter.set_script(ScriptedAdapter::good);
   EXPECT_TRUE(bus->recover(bus->now() + seconds(1)));
@@ -183,7 +185,7 @@ TEST(Slcan, DamagedLinesAreLeftOutAndTold) {
   EXPECT_EQ(next_frame(*bus), slcan_frame("581#4300100092010200"));
   const auto notices = bus->take_notices();
   ASSERT_EQ(notices.size(), 1U);
-  EXPECT_NE(notices.front().find("1 damaged line was left out"), std::string::npos);
+  EXPECT_NE(notices.front().text().find("1 damaged line was left out"), std::string::npos);
   EXPECT_TRUE(bus->take_notices().empty());
 }
 
@@ -213,7 +215,7 @@ TEST(Slcan, WhatDoesNotAnswerIsNoAdapter) {
   const auto opened = bus.open(bus.now() + milliseconds(100), false);
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, Errc::bus);
-  EXPECT_NE(opened.error().message.find("no adapter answers at " + adapter.path()), std::string::npos);
+  EXPECT_NE(opened.error().message.text().find("no adapter answers at " + adapter.path()), std::string::npos);
   EXPECT_EQ(bus.poll_fd(), -1);
 }
 

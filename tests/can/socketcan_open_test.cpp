@@ -19,8 +19,8 @@ TEST(OpenSocketCan, SaysWhatToDoWhenThereIsNoSuchInterface) {
   const auto bus = open_socketcan("nosuchcan7");
   ASSERT_FALSE(bus);
   EXPECT_EQ(bus.error().code, Errc::bus);
-  EXPECT_NE(bus.error().message.find("nosuchcan7"), std::string::npos);
-  EXPECT_NE(bus.error().hint.find("sudo"), std::string::npos);
+  EXPECT_NE(bus.error().message.text().find("nosuchcan7"), std::string::npos);
+  EXPECT_NE(bus.error().hint.text().find("sudo"), std::string::npos);
 }
 
 TEST(CanInterfaces, LeaveOutOtherNetworks) {

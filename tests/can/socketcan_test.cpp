@@ -120,9 +120,8 @@ TEST_F(SocketCan, CountsCanFdFramesAndGivesTheOthers) {
   ASSERT_EQ(::send(kernel_.get(), fd.data(), fd.size(), 0), 72);
   EXPECT_EQ(received(), frame_of("581#60"));
   EXPECT_EQ(received(), std::nullopt);
-  EXPECT_EQ(
-      bus_->take_notices(),
-      std::vector<std::string>{"can0: 2 CAN FD frames came; servoctl reads frames of classical CAN only"});
+  EXPECT_EQ(bus_->take_notices(),
+            std::vector<Message>{"can0: 2 CAN FD frames came; servoctl reads frames of classical CAN only"});
   EXPECT_TRUE(bus_->take_notices().empty());
   EXPECT_EQ(bus_->fd_frames(), 2U) << "since it was opened";
 }
@@ -144,7 +143,7 @@ TEST_F(SocketCan, SendsNothingWhileTheControllerIsBusOff) {
   const auto result = bus_->send(frame_of("000#8100"));
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, Errc::bus);
-  EXPECT_NE(result.error().message.find("bus-off"), std::string::npos);
+  EXPECT_NE(result.error().message.text().find("bus-off"), std::string::npos);
   EXPECT_EQ(sent(), std::nullopt);
 }
 
@@ -163,7 +162,7 @@ TEST_F(SocketCan, SendsNothingBecauseAFrameCameBehindTheReport) {
   EXPECT_TRUE(received() && received());
   const auto result = bus_->send(frame_of("000#8100"));
   ASSERT_FALSE(result);
-  EXPECT_NE(result.error().message.find("bus-off"), std::string::npos);
+  EXPECT_NE(result.error().message.text().find("bus-off"), std::string::npos);
 }
 
 TEST_F(SocketCan, SendsAgainWhenAFrameComesOverAnInterfaceWithACarrier) {
@@ -279,8 +278,8 @@ TEST_F(SocketCan, SaysWhatToDoWhenTheTransmitQueueStaysFull) {
   auto result = bus_->send(frame_of("080#"));
   while (result) result = bus_->send(frame_of("080#"));
   EXPECT_EQ(result.error().code, Errc::bus);
-  EXPECT_EQ(result.error().message, "the transmit queue of can0 remains full");
-  EXPECT_NE(result.error().hint.find("txqueuelen 1000"), std::string::npos);
+  EXPECT_EQ(result.error().message.text(), "the transmit queue of can0 remains full");
+  EXPECT_NE(result.error().hint.text().find("txqueuelen 1000"), std::string::npos);
   while (sent()) {
   }
   EXPECT_TRUE(bus_->send(frame_of("080#")));
@@ -291,7 +290,7 @@ TEST_F(SocketCan, FailsWhenTheOtherEndIsGone) {
   const auto result = bus_->send(frame_of("080#"));
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, Errc::bus);
-  EXPECT_NE(result.error().message.find("can0 failed"), std::string::npos);
+  EXPECT_NE(result.error().message.text().find("can0 failed"), std::string::npos);
 }
 
 TEST_F(SocketCan, FailsInsteadOfWaitingOnAClosedConnection) {

@@ -121,13 +121,14 @@ class ScriptedServer {
 std::string server_refusal(const std::string& place) {
   const auto bus = open_socketcand(place);
   return bus ? "opened"
-             : std::string(name(bus.error().code)) + ": " + bus.error().message + "; " + bus.error().hint;
+             : std::string(name(bus.error().code)) + ": " + bus.error().message.text() + "; " +
+                   bus.error().hint.text();
 }
 
 TEST(Socketcand, OpensSendsAndReceives) {
   ScriptedServer server;
   const auto bus = open_socketcand(server.place());
-  ASSERT_TRUE(bus) << bus.error().message;
+  ASSERT_TRUE(bus) << bus.error().message.text();
   EXPECT_TRUE(server.hears("< open can0 >< rawmode >"));
   EXPECT_TRUE((*bus)->send(server_frame("601#4041600000000000")));
   EXPECT_TRUE(server.hears("< send 601 8 40 41 60 0 0 0 0 0 >"));
@@ -146,7 +147,7 @@ TEST(Socketcand, ARemoteFrameIsRefusedAndNothingIsSent) {
   const auto sent = (*bus)->send(server_frame("701#R"));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().code, Errc::usage);
-  EXPECT_NE(sent.error().message.find("its protocol has none"), std::string::npos);
+  EXPECT_NE(sent.error().message.text().find("its protocol has none"), std::string::npos);
   EXPECT_TRUE((*bus)->send(server_frame("701#00")));
   EXPECT_TRUE(server.hears("< send 701 1 0 >"));
 }
@@ -176,7 +177,7 @@ TEST(Socketcand, AServerThatHangsIsToldWhenItIsFull) {
   for (int i = 0; i < 2000 && sent; ++i) sent = (*bus)->send(server_frame("601#4041600000000000"));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().code, Errc::bus);
-  EXPECT_NE(sent.error().message.find("takes no frames any more"), std::string::npos);
+  EXPECT_NE(sent.error().message.text().find("takes no frames any more"), std::string::npos);
 }
 
 TEST(Socketcand, AConnectionThatIsClosedIsToldAtOnceAndOpenedAnew) {
@@ -190,7 +191,7 @@ TEST(Socketcand, AConnectionThatIsClosedIsToldAtOnceAndOpenedAnew) {
   const auto lost = (*bus)->receive(begin + seconds(5));
   ASSERT_FALSE(lost);
   EXPECT_EQ(lost.error().code, Errc::bus);
-  EXPECT_NE(lost.error().message.find("closed the connection"), std::string::npos);
+  EXPECT_NE(lost.error().message.text().find("closed the connection"), std::string::npos);
   EXPECT_LT((*bus)->now() - begin, seconds(1));
   EXPECT_FALSE((*bus)->send(server_frame("601#00"))) << "until it is recovered";
   EXPECT_TRUE((*bus)->recover((*bus)->now() + seconds(2)));
@@ -239,7 +240,7 @@ TEST(Socketcand, AServerThatSaysNothingIsGivenUp) {
   const auto opened = bus.open(bus.now() + milliseconds(100), false);
   ASSERT_FALSE(opened);
   EXPECT_EQ(opened.error().code, Errc::bus);
-  EXPECT_NE(opened.error().message.find("took the connection and does not answer"), std::string::npos);
+  EXPECT_NE(opened.error().message.text().find("took the connection and does not answer"), std::string::npos);
 }
 
 TEST(Socketcand, ASignalEndsTheOpening) {
@@ -260,8 +261,8 @@ TEST(Socketcand, ElementsThatAreNoFrameAreLeftOutAndTold) {
   EXPECT_EQ((*bus)->receive((*bus)->now() + seconds(2)).value(), server_frame("581#AA"));
   const auto notices = (*bus)->take_notices();
   ASSERT_EQ(notices.size(), 2U);
-  EXPECT_NE(notices[0].find("reports an error: unknown command"), std::string::npos);
-  EXPECT_NE(notices[1].find("1 element was left out"), std::string::npos);
+  EXPECT_NE(notices[0].text().find("reports an error: unknown command"), std::string::npos);
+  EXPECT_NE(notices[1].text().find("1 element was left out"), std::string::npos);
 }
 
 }  // namespace

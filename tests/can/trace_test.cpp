@@ -141,7 +141,7 @@ TEST_F(Trace, ThatCannotBeWrittenSaysSoOnceAndLeavesTheBusUsable) {
   EXPECT_TRUE(bus->receive(kStart + milliseconds(200)));
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told.front().code, Errc::file);
-  EXPECT_NE(told.front().message.find("/dev/full"), std::string::npos);
+  EXPECT_NE(told.front().message.text().find("/dev/full"), std::string::npos);
   for (int i = 3; i < 10; ++i) {
     EXPECT_TRUE(bus->send(parsed("080#")));
     EXPECT_TRUE(bus->receive(kStart + i * milliseconds(100)));
@@ -197,7 +197,7 @@ TEST_F(TracePipe, ThatNobodyHasOpenedIsRefusedAtOnce) {
   const auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), file_, "can0");
   ASSERT_FALSE(bus);
   EXPECT_EQ(bus.error().code, Errc::file);
-  EXPECT_NE(bus.error().message.find("nobody reads"), std::string::npos) << bus.error().message;
+  EXPECT_NE(bus.error().message.text().find("nobody reads"), std::string::npos) << bus.error().message.text();
 }
 
 TEST_F(TracePipe, ThatNobodyReadsHoldsNothingUpAndCountsWhatIsMissing) {
@@ -210,9 +210,10 @@ TEST_F(TracePipe, ThatNobodyReadsHoldsNothingUpAndCountsWhatIsMissing) {
   EXPECT_GT(bus->next_event(), bus->now()) << "it is asked again later, not over and over";
   const auto told = bus->take_notices();
   ASSERT_EQ(told.size(), 1U);
-  EXPECT_NE(told.front().find("frames are missing in the trace"), std::string::npos) << told.front();
+  EXPECT_NE(told.front().text().find("frames are missing in the trace"), std::string::npos)
+      << told.front().text();
   EXPECT_TRUE(bus->take_notices().empty());
-  const auto missing = std::stoul(told.front());
+  const auto missing = std::stoul(told.front().text());
   auto lines = read_lines();
   for (auto time = kStart + seconds(2); time < kStart + seconds(100); time += milliseconds(150)) {
     ASSERT_TRUE(bus->receive(time));
@@ -234,7 +235,7 @@ TEST_F(TracePipe, IsNotWaitedForAtTheEndAndSaysWhatIsMissing) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, seconds(5));
   ASSERT_EQ(told.size(), 1U);
   EXPECT_EQ(told.front().code, Errc::file);
-  EXPECT_EQ(std::stoul(told.front().message) + read_lines(), kFrames) << told.front().message;
+  EXPECT_EQ(std::stoul(told.front().message.text()) + read_lines(), kFrames) << told.front().message.text();
 }
 
 TEST_F(TracePipe, ThatIsDestroyedTellsNobody) {
@@ -267,7 +268,7 @@ TEST_F(Trace, IsRefusedWhenTheFileCannotBeMade) {
   const auto bus = trace_to(std::make_unique<ScriptedBus>(kStart), "/nosuchfolder/trace.log", "can0");
   ASSERT_FALSE(bus);
   EXPECT_EQ(bus.error().code, Errc::file);
-  EXPECT_NE(bus.error().message.find("/nosuchfolder/trace.log"), std::string::npos);
+  EXPECT_NE(bus.error().message.text().find("/nosuchfolder/trace.log"), std::string::npos);
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ class BlockClientTest : public testing::Test {
     const auto r = result();
     ASSERT_FALSE(r);
     EXPECT_EQ(r.error().code, code);
-    EXPECT_EQ(r.error().message, "node 2, object 0x1F50:1: " + std::string(message));
+    EXPECT_EQ(r.error().message.text(), "node 2, object 0x1F50:1: " + std::string(message));
   }
   SdoClient client{2, 500ms};
   TimePoint now{1s};

@@ -75,7 +75,7 @@ TEST(BlockTransfer, GetsOverTheLossOfAnySingleSegment) {
     line.client.start_upload({0x1F50, 1}, line.now, Transfer::block);
     object.value = counted(700);
     const auto read = line.run(fate);
-    ASSERT_TRUE(read) << lost << ": " << read.error().message;
+    ASSERT_TRUE(read) << lost << ": " << read.error().message.text();
     EXPECT_EQ(*read, counted(700));
     segment = -2;
     line.client.start_download({0x1F50, 1}, counted(700), line.now, Transfer::block);

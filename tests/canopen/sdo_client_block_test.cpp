@@ -29,7 +29,7 @@ class ClientBlockTest : public testing::Test {
     EXPECT_TRUE(r) << "the transfer has not ended";
     EXPECT_EQ(client.deadline(), kNever);
     constexpr std::string_view kStart = "node 2, object 0x2000:1: ";
-    return !r ? "" : *r ? std::to_string((*r)->size()) : r->error().message.substr(kStart.size());
+    return !r ? "" : *r ? std::to_string((*r)->size()) : r->error().message.text().substr(kStart.size());
   }
   SdoClient client{2, 500ms};
   TimePoint now{1s};

@@ -37,7 +37,7 @@ class SdoClientModeTest : public testing::Test {
     EXPECT_EQ(r.error().node, 2);
     EXPECT_EQ(r.error().object, (ObjectAddress{0x2000, 1}));
     constexpr std::string_view kStart = "node 2, object 0x2000:1: ";
-    return r.error().message.substr(kStart.size());
+    return r.error().message.text().substr(kStart.size());
   }
 
   SdoClient client{2, 500ms};
@@ -252,15 +252,15 @@ TEST_F(SdoClientModeTest, NamesAnotherMasterWhenNoAnswerComes) {
   tell("602#4000100000000000");
   EXPECT_TRUE(client.busy());
   play(client, now, {"+ 500ms", "> 602#8000200100000405"});
-  EXPECT_EQ(result().error().hint, "another master is also using SDO with this node");
+  EXPECT_EQ(result().error().hint.text(), "another master is also using SDO with this node");
   upload({"> 602#4000100000000000", "+ 500ms", "> 602#8000100000000405"});
-  EXPECT_EQ(result().error().hint, "");
+  EXPECT_EQ(result().error().hint.text(), "");
   download(1, Transfer::automatic, {"> 602#2F00200101000000"});
   tell("602#4000100000000000");
   play(client, now, {"+ 500ms", "> 602#8000200100000405"});
-  EXPECT_EQ(result().error().hint, "another master is also using SDO with this node");
+  EXPECT_EQ(result().error().hint.text(), "another master is also using SDO with this node");
   download(1, Transfer::automatic, {"> 602#2F00200101000000", "+ 500ms", "> 602#8000200100000405"});
-  EXPECT_EQ(result().error().hint, "");
+  EXPECT_EQ(result().error().hint.text(), "");
 }
 
 TEST_F(SdoClientModeTest, EndsWhenAnotherMasterUsesItsSegments) {
@@ -289,9 +289,9 @@ TEST_F(SdoClientModeTest, EndsWhenAnotherMasterUsesItsSegments) {
 TEST_F(SdoClientModeTest, SaysThatABlockTransferWasNotAnswered) {
   upload({"> 602#A40020017F000000", "+ 500ms", "> 602#8000200100000405"}, Transfer::domain);
   const auto read = result();
-  EXPECT_EQ(read.error().message,
+  EXPECT_EQ(read.error().message.text(),
             "node 2, object 0x2000:1: no answer to the block transfer request within 500 ms");
-  EXPECT_EQ(read.error().hint, "if the node answers `read 0x1000`, try --transfer segmented");
+  EXPECT_EQ(read.error().hint.text(), "if the node answers `read 0x1000`, try --transfer segmented");
   download(9, Transfer::block, {"> 602#C600200109000000", "+ 500ms", "> 602#8000200100000405"});
   EXPECT_EQ(failure(), "no answer to the block transfer request within 500 ms");
 }

@@ -29,7 +29,7 @@ class SdoClientTest : public testing::Test {
     const auto r = result();
     ASSERT_FALSE(r);
     EXPECT_EQ(r.error().code, code);
-    EXPECT_EQ(r.error().message, message);
+    EXPECT_EQ(r.error().message.text(), message);
     EXPECT_EQ(r.error().abort_code, abort);
     EXPECT_EQ(r.error().node, 2);
     EXPECT_FALSE(client.busy());
@@ -126,9 +126,9 @@ TEST_F(SdoClientTest, ReportsTheAbortOfTheNode) {
 
 TEST_F(SdoClientTest, ARefusedWriteOfAMappingNamesTheStepsARefusedReadDoesNot) {
   download({0x1600, 1}, {0x10, 0x00, 0x40, 0x60}, {"> 602#2300160110004060", "< 582#8000160100000106"});
-  EXPECT_NE(result().error().hint.find("`pdo map`"), std::string::npos);
+  EXPECT_NE(result().error().hint.text().find("`pdo map`"), std::string::npos);
   upload({0x1600, 1}, {"> 602#4000160100000000", "< 582#8000160100000106"});
-  EXPECT_EQ(result().error().hint, "");
+  EXPECT_EQ(result().error().hint.text(), "");
 }
 
 TEST_F(SdoClientTest, ReportsAnAbortInTheMiddleOfASegmentedTransfer) {

@@ -65,16 +65,16 @@ class SdoDoubled : public testing::TestWithParam<Duration> {
       auto value = counted(size);
       for (auto& byte : value) byte = static_cast<std::uint8_t>(byte + 16 * round + 1);
       const auto written = write(value, transfer);
-      ASSERT_TRUE(written) << written.error().message;
+      ASSERT_TRUE(written) << written.error().message.text();
       EXPECT_EQ(store.value, value);
       const auto back = read(transfer);
-      ASSERT_TRUE(back) << back.error().message;
+      ASSERT_TRUE(back) << back.error().message.text();
       EXPECT_EQ(*back, value);
       // Changed by the drive itself.
       for (auto& byte : value) ++byte;
       store.value = value;
       const auto again = read(transfer);
-      ASSERT_TRUE(again) << again.error().message;
+      ASSERT_TRUE(again) << again.error().message.text();
       EXPECT_EQ(*again, value) << "not an older one";
     }
   }

@@ -189,9 +189,9 @@ TEST_F(SdoLate, ALateAnswerIsPartOfTheMessageAboutSilence) {
        {"> 602#4041600000000000", "+ 199ms", "< 582#4F60600001000000", "+ 500ms", "> 602#8041600000000405"});
   const auto end = result();
   EXPECT_EQ(end.error().code, Errc::timeout);
-  EXPECT_EQ(end.error().message,
+  EXPECT_EQ(end.error().message.text(),
             "node 2, object 0x6041:0: no answer within 500 ms; it answered an earlier request after 0.7 s");
-  EXPECT_NE(end.error().hint.find("--timeout 2s"), std::string::npos) << end.error().hint;
+  EXPECT_NE(end.error().hint.text().find("--timeout 2s"), std::string::npos) << end.error().hint.text();
 }
 
 TEST_F(SdoLate, AnAbortThatNamesAnotherObjectIsPartOfTheMessage) {
@@ -200,7 +200,7 @@ TEST_F(SdoLate, AnAbortThatNamesAnotherObjectIsPartOfTheMessage) {
        {"> 602#4041600000000000", "< 582#8042600000000206", "+ 500ms", "> 602#8041600000000405"});
   const auto end = result();
   EXPECT_EQ(end.error().code, Errc::protocol);
-  EXPECT_EQ(end.error().message,
+  EXPECT_EQ(end.error().message.text(),
             "node 2, object 0x6041:0: no answer within 500 ms; it aborted with 0x06020000 and named object "
             "0x6042:0");
 }
@@ -210,7 +210,7 @@ TEST_F(SdoLate, AnAnswerForAnotherObjectIsPartOfTheMessage) {
   play(client, now,
        {"> 602#4041600000000000", "< 582#4B42600000000000", "+ 500ms", "> 602#8041600000000405"});
   EXPECT_EQ(
-      result().error().message,
+      result().error().message.text(),
       "node 2, object 0x6041:0: no answer within 500 ms; it answered with command 0x4B for object 0x6042:0");
 }
 

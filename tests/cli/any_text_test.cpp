@@ -68,11 +68,11 @@ TEST(AnyText, SurvivesEveryFormatAndIsNothingButAValue) {
          {BackupFormat::json, BackupFormat::csv, BackupFormat::batch, BackupFormat::dcf}) {
       SCOPED_TRACE(static_cast<int>(format));
       const auto written = target.text(backup, format);
-      ASSERT_TRUE(written) << written.error().message;
+      ASSERT_TRUE(written) << written.error().message.text();
       const auto read = target.read(*written, format);
       if (format == BackupFormat::dcf && !read)
         continue;  // Nothing of it could stand there, and that is told.
-      ASSERT_TRUE(read) << read.error().message << "\n" << *written;
+      ASSERT_TRUE(read) << read.error().message.text() << "\n" << *written;
       for (const auto& entry : read->entries) {
         ASSERT_TRUE(format == BackupFormat::dcf || entry.object == object) << to_string(entry.object);
         if (entry.object == object && entry.bytes) {
@@ -82,8 +82,8 @@ TEST(AnyText, SurvivesEveryFormatAndIsNothingButAValue) {
     }
     const auto read = target.read(target.text(backup, BackupFormat::json).value(), BackupFormat::json);
     const auto done = target.restore(read.value());
-    ASSERT_TRUE(done) << done.error().message;
-    EXPECT_TRUE(target.context.errors.empty()) << target.context.errors.front().message;
+    ASSERT_TRUE(done) << done.error().message.text();
+    EXPECT_TRUE(target.context.errors.empty()) << target.context.errors.front().message.text();
     EXPECT_EQ(target.drive().value(object), bytes);
   }
 }

@@ -33,7 +33,7 @@ TEST_F(AxisLines, ManyLinesSearchForTheirFileOnceAndAgainBehindOneThatMayHaveMad
   holder.search_again();
   const auto found = holder.get({});
   fs::current_path(before);
-  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found) << found.error().message.text();
   ASSERT_NE(*found, nullptr);
   EXPECT_EQ((*found)->axes.size(), 4U);
 }

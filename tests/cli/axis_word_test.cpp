@@ -9,7 +9,7 @@ namespace {
 std::string hint(const std::vector<std::string>& words, const Result<const cabinet::Cabinet*>& known) {
   const auto parsed = parse_line(words);
   EXPECT_FALSE(parsed);
-  return about_axis(parsed.error(), words, match_command(words), [&] { return known; }).hint;
+  return about_axis(parsed.error(), words, match_command(words), [&] { return known; }).hint.text();
 }
 
 TEST(AxisWord, TellsWhatIsWrongWithTheCabinetFile) {

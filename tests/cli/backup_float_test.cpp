@@ -61,22 +61,22 @@ TEST(BackupFloat, AFileThatSaysNoNumberWritesNone) {
         if (entry.object == objects[2]) entry.bytes = one;
       }
       const auto text = world.text(backup, format);
-      ASSERT_TRUE(text) << text.error().message;
+      ASSERT_TRUE(text) << text.error().message.text();
       const auto read = world.read(*text, format);
       if (format != BackupFormat::json) {
         EXPECT_FALSE(read && world.restore(*read));
         EXPECT_EQ(world.values(backup), held);
         continue;
       }
-      ASSERT_TRUE(read) << read.error().message;
+      ASSERT_TRUE(read) << read.error().message.text();
       ASSERT_TRUE(world.restore(*read));
       auto wanted = held;
       wanted[objects[2]] = one;
       EXPECT_EQ(world.values(backup), wanted);
       const auto& errors = world.context.errors;
       ASSERT_EQ(errors.size(), 1U) << "what was left as it is, is an error";
-      EXPECT_NE(errors[0].message.find("infinity or of no number (NaN)"), std::string::npos)
-          << errors[0].message;
+      EXPECT_NE(errors[0].message.text().find("infinity or of no number (NaN)"), std::string::npos)
+          << errors[0].message.text();
     }
   }
 }

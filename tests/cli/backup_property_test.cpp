@@ -50,10 +50,10 @@ TEST_P(Families, TakeBackWhatTheyHeldFromEveryFormat) {
       const auto text = world.text(backup, format);
       if (!text) continue;  // A family without data sheet has no DCF.
       const auto read = world.read(*text, format);
-      ASSERT_TRUE(read) << read.error().message;
+      ASSERT_TRUE(read) << read.error().message.text();
       const auto same = world.restore(*read);
-      ASSERT_TRUE(same) << same.error().message;
-      EXPECT_TRUE(world.context.errors.empty()) << world.context.errors.front().message;
+      ASSERT_TRUE(same) << same.error().message.text();
+      EXPECT_TRUE(world.context.errors.empty()) << world.context.errors.front().message.text();
       EXPECT_EQ(world.values(backup), held) << "nothing differed";
     }
   }
@@ -66,7 +66,7 @@ TEST_P(Families, PutWhatIsWithinLimitsIntoAFactoryDriveAndNameTheRest) {
     const auto backup = source.backup();
     World target(GetParam(), {});
     const auto read = target.read(source.text(backup, BackupFormat::json).value(), BackupFormat::json);
-    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_TRUE(read) << read.error().message.text();
     auto one = *read;
     // One after the other: a drive may refuse what it held itself, in this state or beside other values.
     std::size_t taken = 0;
@@ -74,7 +74,7 @@ TEST_P(Families, PutWhatIsWithinLimitsIntoAFactoryDriveAndNameTheRest) {
       if (!entry.bytes) continue;
       one.entries = {entry};
       const auto done = target.restore(one);
-      ASSERT_TRUE(done) << done.error().message;
+      ASSERT_TRUE(done) << done.error().message.text();
       const bool same = target.drive().value(entry.object) == *entry.bytes;
       const bool told = !target.context.errors.empty();
       EXPECT_TRUE(same || told || settings::is_address(&profile_of(GetParam()), entry.object))
@@ -96,11 +96,11 @@ TEST(ABackup, LeavesOutACobIdThatNoDriveMayHaveAndIsTaken) {
   const auto backup = world.backup();
   settings::tell_left_out(world.context, backup);
   ASSERT_EQ(world.context.notices.size(), 1U);
-  EXPECT_NE(world.context.notices[0].find("CAN-ID 0x601 belongs to SDO"), std::string::npos)
-      << world.context.notices[0];
+  EXPECT_NE(world.context.notices[0].text().find("CAN-ID 0x601 belongs to SDO"), std::string::npos)
+      << world.context.notices[0].text();
   const auto done =
       world.restore(world.read(world.text(backup, BackupFormat::json).value(), BackupFormat::json).value());
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   EXPECT_TRUE(world.context.errors.empty());
 }
 

@@ -29,9 +29,9 @@ Result<std::string> no_variable(std::string_view) { return fail(Errc::usage, "no
 /// Empty when it holds, else the message.
 std::string refusal(std::string_view text, const Value& result = two_nodes()) {
   const auto expression = parse_expression(text, no_variable);
-  if (!expression) return "unreadable: " + expression.error().message;
+  if (!expression) return "unreadable: " + expression.error().message.text();
   const auto met = expect(*expression, result);
-  return met ? std::string() : met.error().message;
+  return met ? std::string() : met.error().message.text();
 }
 
 TEST(Expectation, LooksIntoSamplesThatAreKeptAsJson) {
@@ -109,7 +109,7 @@ TEST(Expectation, OfWhatIsNotThereDoesNotHold) {
   EXPECT_EQ(refusal(".value == 1", Value()), "the result has no field value");
   const auto met = expect(parse_expression("[0].volts == 1", no_variable).value(), two_nodes());
   EXPECT_EQ(met.error().code, Errc::negative);
-  EXPECT_EQ(met.error().hint, "it has node, value, state, ready, bits or fault");
+  EXPECT_EQ(met.error().hint.text(), "it has node, value, state, ready, bits or fault");
   EXPECT_EQ(refusal("[0].state < 5"),
             "[0].state (\"operation enabled\") is not a number: < cannot compare it");
 }
@@ -136,11 +136,12 @@ TEST(Expectation, FillsInVariablesWithoutReadingThemAsAnExpression) {
     return std::string("switched on\" and .value == \"0");
   };
   EXPECT_TRUE(expect(parse_expression("[${I}].value == 40", variables).value(), two_nodes()));
-  EXPECT_EQ(
-      expect(parse_expression("[0].state == \"${TEXT}\"", variables).value(), two_nodes()).error().message,
-      R"([0].state is "operation enabled", expected == "switched on\" and .value == \"0")");
+  EXPECT_EQ(expect(parse_expression("[0].state == \"${TEXT}\"", variables).value(), two_nodes())
+                .error()
+                .message.text(),
+            R"([0].state is "operation enabled", expected == "switched on\" and .value == \"0")");
   EXPECT_FALSE(expect(parse_expression("[1].state == '${TEXT}'", variables).value(), two_nodes()));
-  EXPECT_EQ(parse_expression(".a == ${I}", no_variable).error().message, "no variable");
+  EXPECT_EQ(parse_expression(".a == ${I}", no_variable).error().message.text(), "no variable");
 }
 
 TEST(Expectation, IsWrittenAsItIsRead) {

@@ -27,7 +27,7 @@ Words said(std::string_view text, Variables variables = {}) {
   const auto made = plan(text, std::move(variables));
   for (const auto& step : made.steps) out.push_back(std::to_string(step.line) + " " + step.text);
   for (const auto& error : made.errors)
-    out.push_back(std::to_string(error.line.value()) + "! " + error.message);
+    out.push_back(std::to_string(error.line.value()) + "! " + error.message.text());
   return out;
 }
 
@@ -72,9 +72,9 @@ TEST(BatchVariables, OfTheCommandLineWinOverTheFile) {
 TEST(BatchVariables, ThatNobodySetAreRefusedWithTheNearestName) {
   const auto made = plan("set GAIN=5\nread ${GIAN}\nread ${OTHER\nread ${}");
   ASSERT_EQ(made.errors.size(), 3U);
-  EXPECT_EQ(made.errors[0].message, "unknown variable ${GIAN}");
-  EXPECT_NE(made.errors[0].hint.find("GAIN"), std::string::npos);
-  EXPECT_EQ(made.errors[1].message, "the brace of ${ is not closed");
+  EXPECT_EQ(made.errors[0].message.text(), "unknown variable ${GIAN}");
+  EXPECT_NE(made.errors[0].hint.text().find("GAIN"), std::string::npos);
+  EXPECT_EQ(made.errors[1].message.text(), "the brace of ${ is not closed");
 }
 
 TEST(BatchVariables, ThatGrowWithoutEndAreRefused) {
@@ -137,7 +137,7 @@ TEST(BatchVariables, DoNotMakeAFileWithoutEnd) {
   line = "set L=" + four_kib + "\nfor A in 1-10000\nread ${L}${L}\nend";
   const auto made = plan(line);
   ASSERT_EQ(made.errors.size(), 1U);
-  EXPECT_EQ(made.errors[0].message.substr(0, 57),
+  EXPECT_EQ(made.errors[0].message.text().substr(0, 57),
             "with its variables expanded the file exceeds 16 MiB [A=20");
   EXPECT_LT(made.steps.size(), 2'200U);
 }

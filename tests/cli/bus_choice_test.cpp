@@ -142,7 +142,7 @@ TEST_F(BusChoice, SettingsForLinesLoseTheBusThatTheFileReplaces) {
   auto settings = shell->defaults();
   settings.cabinet_from = Source::line;
   const auto settled = shell->settings_for_lines(settings);
-  ASSERT_TRUE(settled) << settled.error().message;
+  ASSERT_TRUE(settled) << settled.error().message.text();
   EXPECT_EQ(settled->bus, "");
   EXPECT_EQ(settled->cabinet_from, Source::set);
   settings.bus_from = Source::line;

@@ -110,7 +110,7 @@ constexpr const char* kFamilies[] = {"cia402", "da200", "dm", "gsd600", "sv2", "
 TEST(Chinese, CallsEachEntryAndParameterByItsOwnName) {
   for (const auto* family : kFamilies) {
     const auto profile = drive::load_profile(family, std::vector{golden_source() / "eds"});
-    ASSERT_TRUE(profile) << profile.error().message;
+    ASSERT_TRUE(profile) << profile.error().message.text();
     const auto names = show::chinese_names(*profile);
     const auto look = [&](const drive::Target& target, const std::string& name, const std::string& chinese) {
       if (const auto alone = names.find(name); alone != names.end() && !chinese.empty()) {
@@ -144,7 +144,7 @@ TEST(Chinese, LeavesNoEnglishWordInWhatIsToldOfTheFamilies) {
   };
   for (const auto* family : kFamilies) {
     const auto profile = drive::load_profile(family, std::vector{golden_source() / "eds"});
-    ASSERT_TRUE(profile) << profile.error().message;
+    ASSERT_TRUE(profile) << profile.error().message.text();
     const auto names = show::chinese_names(*profile);
     for (const auto& [english, chinese] : names) look(family, chinese);
     const auto has = [&](const std::string& name, const std::string& chinese) {

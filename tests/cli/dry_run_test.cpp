@@ -123,7 +123,7 @@ class DryRun : public testing::TestWithParam<std::string> {
     std::vector<Planned> planned;
     find_frames(dry.result, planned);
     const auto real = perform(before, line, false);
-    const auto why = real.errors.empty() ? std::string() : real.errors.front().message;
+    const auto why = real.errors.empty() ? std::string() : real.errors.front().message.text();
     if (frames.empty()) {
       EXPECT_EQ(dry.code(), real.code()) << "the line itself says: " << why;
       EXPECT_TRUE(planned.empty()) << planned.front().frame << " would not be sent: " << why;

@@ -92,7 +92,7 @@ TEST(FindingCodes, AllSayWhatTheyMeanAndWhatMendsThem) {
 TEST(FindingCodes, AreKnownToExplainAndToThePage) {
   const auto file = std::filesystem::path(source_dir()) / "eds/cia/cia402.topics.toml";
   const auto topics = drive::parse_topics(content(file), file.string(), "cia402");
-  ASSERT_TRUE(topics) << topics.error().message;
+  ASSERT_TRUE(topics) << topics.error().message.text();
   std::set<std::string> explained;
   for (const auto& topic : *topics)
     if (topic.name == "doctor findings")

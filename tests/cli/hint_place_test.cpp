@@ -11,7 +11,7 @@ namespace {
 
 std::string placed(const std::string& text, const std::vector<std::string>& line) {
   const auto parsed = parse_line(line);
-  EXPECT_TRUE(parsed) << parsed.error().message;
+  EXPECT_TRUE(parsed) << parsed.error().message.text();
   return parsed ? with_place(text, *parsed) : std::string();
 }
 

@@ -89,7 +89,7 @@ const std::set<std::string> kNoCommands{"candump -L",
 
 bool lacks_words(const Words& words) {
   const auto parsed = parse_line(words);
-  return !parsed && parsed.error().message.ends_with(" is missing");
+  return !parsed && parsed.error().message.text().ends_with(" is missing");
 }
 
 /// What the line answers on a simulated drive.
@@ -143,7 +143,7 @@ TEST(Hints, NameCommandsThatRunAsTheyArePrinted) {
       if (refused.front() == "run") line.insert(line.end(), {"-d", "gsd600", "-n", "1"});
       const auto outcome = followed(line);
       EXPECT_NE(outcome.code(), exit_code(Errc::usage))
-          << text << ": " << (outcome.errors.empty() ? "" : outcome.errors.front().message);
+          << text << ": " << (outcome.errors.empty() ? "" : outcome.errors.front().message.text());
     }
   EXPECT_GT(commands, 50);
 }

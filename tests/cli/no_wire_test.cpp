@@ -61,8 +61,8 @@ class NoWire : public testing::TestWithParam<const char*> {
     const auto* found = command::find_command(path);
     EXPECT_TRUE(check_network(*found, *session)) << path;
     auto done = found->run(context, arguments);
-    EXPECT_TRUE(done) << path << ": " << done.error().message;
-    for (const auto& error : context.errors) ADD_FAILURE() << path << ": " << error.message;
+    EXPECT_TRUE(done) << path << ": " << done.error().message.text();
+    for (const auto& error : context.errors) ADD_FAILURE() << path << ": " << error.message.text();
     return done;
   }
   std::string file(std::string_view name) const { return (folder_ / name).string(); }

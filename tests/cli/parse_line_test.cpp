@@ -20,7 +20,7 @@ TEST(ParseLine, TakesGlobalOptionsOnBothSidesOfTheCommand) {
                             Words{"param", "get", "Pn0202", "--bus=can0", "-n3"},
                             Words{"--bus", "can0", "param", "get", "-n", "3", "Pn0202"}}) {
     const auto line = parse_line(words);
-    ASSERT_TRUE(line) << line.error().message;
+    ASSERT_TRUE(line) << line.error().message.text();
     EXPECT_EQ(line->command->path, "param get");
     EXPECT_EQ(line->arguments.text("--bus"), "can0");
     EXPECT_EQ(line->arguments.text("--node"), "3");
@@ -40,7 +40,7 @@ TEST(ParseLine, SaysWhichCommandMayBeMeant) {
   for (const auto& [words, said] : lines) {
     const auto line = parse_line(words);
     ASSERT_FALSE(line);
-    EXPECT_EQ((line.error().message + ": " + line.error().hint).substr(0, said.size()), said);
+    EXPECT_EQ((line.error().message.text() + ": " + line.error().hint.text()).substr(0, said.size()), said);
   }
 }
 
@@ -63,13 +63,13 @@ TEST(ParseLine, SaysWhatAWordOfOtherToolsMeansBeforeWhatItIsSpelledLike) {
   for (const auto& [words, said] : lines) {
     const auto line = parse_line(words);
     ASSERT_FALSE(line);
-    EXPECT_EQ((line.error().message + ": " + line.error().hint).substr(0, said.size()), said);
+    EXPECT_EQ((line.error().message.text() + ": " + line.error().hint.text()).substr(0, said.size()), said);
   }
 }
 
 TEST(ParseLine, LeavesValuesAsTheyAreWritten) {
   const auto line = parse_line({"write", "6040h", "-010"});
-  ASSERT_TRUE(line) << line.error().message;
+  ASSERT_TRUE(line) << line.error().message.text();
   EXPECT_EQ(line->arguments.text("object"), "6040h");
   EXPECT_EQ(line->arguments.text("value"), "-010");
 }
@@ -78,7 +78,7 @@ TEST(ParseLine, TakesEveryWordBehindTwoDashesAsAValue) {
   for (const auto* text :
        {"", "-", "--", "-h", "--help", "--from=/etc/passwd", "--yes", "-n", "{}", "[a,b]", "%%", "a b"}) {
     const auto line = parse_line({"write", "0x2000", "--type", "string", "--", text});
-    ASSERT_TRUE(line) << text << ": " << line.error().message;
+    ASSERT_TRUE(line) << text << ": " << line.error().message.text();
     EXPECT_EQ(line->arguments.text("object"), "0x2000");
     EXPECT_EQ(line->arguments.text("--type"), "string");
     ASSERT_TRUE(line->arguments.has("value")) << text;
@@ -87,10 +87,11 @@ TEST(ParseLine, TakesEveryWordBehindTwoDashesAsAValue) {
     EXPECT_FALSE(line->arguments.has("--from"));
   }
   const auto many = parse_line({"read", "a", "--", "[b,c]", "--", "--yes"});
-  ASSERT_TRUE(many) << many.error().message;
+  ASSERT_TRUE(many) << many.error().message.text();
   const auto all = many->arguments.all("object");
   EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "[b,c]", "--", "--yes"}));
-  EXPECT_EQ(parse_line({"write", "a", "b", "--", "c"}).error().message, "write: unexpected argument 'c'");
+  EXPECT_EQ(parse_line({"write", "a", "b", "--", "c"}).error().message.text(),
+            "write: unexpected argument 'c'");
   EXPECT_EQ(parse_line({"write", "a", "{}"})->arguments.text("value"), "{}");
 }
 
@@ -106,11 +107,11 @@ TEST(ParseLine, RefusesAnOptionWithoutItsValueAndASwitchWithOne) {
   for (const auto& [words, said] : lines) {
     const auto line = parse_line(words);
     ASSERT_FALSE(line) << said;
-    EXPECT_EQ(line.error().message, said);
+    EXPECT_EQ(line.error().message.text(), said);
   }
-  EXPECT_EQ(parse_line({"backup", "a.json", "--format"}).error().hint.substr(0, 10), "--format: ");
+  EXPECT_EQ(parse_line({"backup", "a.json", "--format"}).error().hint.text().substr(0, 10), "--format: ");
   const auto line = parse_line({"read", "0x6041", "--to=--json", "--timeout", "-5"});
-  ASSERT_TRUE(line) << line.error().message;
+  ASSERT_TRUE(line) << line.error().message.text();
   EXPECT_EQ(line->arguments.text("--to"), "--json");
   EXPECT_EQ(line->arguments.text("--timeout"), "-5");
 }
@@ -119,8 +120,9 @@ TEST(ParseLine, KnowsTheOptionsThatStandWithoutACommand) {
   for (const auto& words : {Words{"-b", "can0", "--readonly"}, Words{"--dry-rum"}, Words{"-b", "can0", "-X"},
                             Words{"--keep", "-b", "can0"}, Words{"-n3", "--nonsense"}})
     EXPECT_FALSE(check_options_alone(words)) << words.back();
-  EXPECT_EQ(check_options_alone({"-b", "can0", "--dryrun"}).error().message, "there is no option '--dryrun'");
-  EXPECT_EQ(check_options_alone({"--dryrun"}).error().hint, "did you mean --dry-run?");
+  EXPECT_EQ(check_options_alone({"-b", "can0", "--dryrun"}).error().message.text(),
+            "there is no option '--dryrun'");
+  EXPECT_EQ(check_options_alone({"--dryrun"}).error().hint.text(), "did you mean --dry-run?");
   for (const auto& words :
        {Words{}, Words{"-b", "can0", "-n3", "--read-only"}, Words{"--bus=can0", "-y"}, Words{"-d", "-x"}})
     EXPECT_TRUE(check_options_alone(words));
@@ -136,29 +138,30 @@ TEST(ParseLine, RefusesAnOptionWithTwoValues) {
     const auto line = parse_line(words);
     ASSERT_FALSE(line) << words[1];
     EXPECT_EQ(line.error().code, Errc::usage);
-    EXPECT_NE(line.error().message.find("is given twice: "), std::string::npos) << line.error().message;
+    EXPECT_NE(line.error().message.text().find("is given twice: "), std::string::npos)
+        << line.error().message.text();
   }
   EXPECT_TRUE(parse_line({"status", "-n", "1", "--node", "1"}));
 }
 
 TEST(ParseLine, TakesOptionsBehindTwoDashesWhenEveryArgumentHasItsValue) {
   const auto line = parse_line({"jog", "--", "-30rpm", "--for", "2s", "-n", "1"});
-  ASSERT_TRUE(line) << line.error().message;
+  ASSERT_TRUE(line) << line.error().message.text();
   EXPECT_EQ(line->arguments.text("speed"), "-30rpm");
   EXPECT_EQ(line->arguments.text("--for"), "2s");
   EXPECT_EQ(line->arguments.text("--node"), "1");
   const auto write = parse_line({"write", "0x2000", "-n", "1", "--", "--yes", "--keep"});
-  ASSERT_TRUE(write) << write.error().message;
+  ASSERT_TRUE(write) << write.error().message.text();
   EXPECT_EQ(write->arguments.text("value"), "--yes");
   EXPECT_TRUE(write->arguments.has("--keep"));
   EXPECT_FALSE(write->arguments.has("--yes"));
-  EXPECT_EQ(parse_line({"jog", "--", "-30rpm", "--bogus"}).error().message,
+  EXPECT_EQ(parse_line({"jog", "--", "-30rpm", "--bogus"}).error().message.text(),
             "jog: there is no option '--bogus'");
 }
 
 TEST(ParseLine, GivesManyWordsToTheParameterThatTakesThem) {
   const auto line = parse_line({"read", "a", "b", "--type", "u8", "c"});
-  ASSERT_TRUE(line) << line.error().message;
+  ASSERT_TRUE(line) << line.error().message.text();
   const auto all = line->arguments.all("object");
   EXPECT_EQ(Words(all.begin(), all.end()), (Words{"a", "b", "c"}));
   EXPECT_EQ(line->arguments.text("--type"), "u8");
@@ -172,7 +175,7 @@ TEST(ParseLine, LeaksNoValueIntoTheNextLine) {
 /// What a line gives, in words.
 std::string outcome_of(const Words& words) {
   const auto line = parse_line(words);
-  if (!line) return line.error().message;
+  if (!line) return line.error().message.text();
   std::string out(line->command->path);
   const auto add = [&](std::span<const command::Parameter> parameters) {
     for (const auto& parameter : parameters)
@@ -228,7 +231,7 @@ TEST(ParseLine, KnowsEveryOptionOfEveryCommandAtOnce) {
     name_all(command->parameters);
     name_all(command::global_options());
     const auto line = parse_line(words);
-    EXPECT_TRUE(line || line.error().message.ends_with(" is missing")) << line.error().message;
+    EXPECT_TRUE(line || line.error().message.text().ends_with(" is missing")) << line.error().message.text();
   }
 }
 

@@ -64,8 +64,8 @@ TEST_F(OnRegisters, AFamilyWithoutRegistersIsRefused) {
 TEST_F(OnRegisters, MotionSaysWhatTheDriveHasInstead) {
   const auto possible = check_registers(*command::find_command("jog"), *session, &ts, false);
   ASSERT_FALSE(possible);
-  EXPECT_NE(possible.error().hint.find("Fn_33"), std::string::npos);
-  EXPECT_NE(possible.error().hint.find("Nothing stops the motor"), std::string::npos);
+  EXPECT_NE(possible.error().hint.text().find("Fn_33"), std::string::npos);
+  EXPECT_NE(possible.error().hint.text().find("Nothing stops the motor"), std::string::npos);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST_F(RingStateTest, ADriveWithPowerKeepsItsState) {
     (void)run(path, {1});
     ASSERT_EQ(context.errors.size(), 1U) << path;
     EXPECT_EQ(context.errors.front().code, Errc::refused) << path;
-    EXPECT_EQ(context.errors.front().hint, "`disable -n 1` first") << path;
+    EXPECT_EQ(context.errors.front().hint.text(), "`disable -n 1` first") << path;
   }
   EXPECT_EQ(slave().state(), EscState::op);
   EXPECT_TRUE(drive::is_energised(slave().model().power_state()));
@@ -75,7 +75,7 @@ TEST_F(RingStateTest, WhatAnotherMasterLeftIsTakenOverWhenThatIsSaid) {
   (void)run_on(*other, "state preop", {1});
   ASSERT_EQ(context.errors.size(), 1U);
   EXPECT_EQ(context.errors.front().code, Errc::refused);
-  EXPECT_NE(context.errors.front().hint.find("`state preop --take-over -n 1`"), std::string::npos)
+  EXPECT_NE(context.errors.front().hint.text().find("`state preop --take-over -n 1`"), std::string::npos)
       << notices();
   audience = &unwilling;
   (void)run_on(*other, "state preop", {1}, {{"--take-over", ""}});
@@ -133,7 +133,7 @@ TEST_F(RingStateTest, ADryRunChangesNothing) {
     context.nodes = {1};
     context.dry_run = true;
     const auto done = command::find_command(path)->run(context, arguments);
-    ASSERT_TRUE(done) << path << ": " << done.error().message;
+    ASSERT_TRUE(done) << path << ": " << done.error().message.text();
     EXPECT_TRUE(context.errors.empty()) << path << ": " << notices();
     EXPECT_EQ(report::to_json(*done).find("\"frame\":\""), std::string::npos)
         << path << report::to_json(*done);

@@ -65,16 +65,16 @@ class RingTest : public session::EtherCatTest {
     EXPECT_TRUE(check_network(*found, session)) << path;
     const auto done = found->run(context, arguments);
     if (!done) context.errors.push_back(done.error());
-    return done ? report::to_json(*done) : done.error().message;
+    return done ? report::to_json(*done) : done.error().message.text();
   }
   bool notes(std::string_view text) const {
     return std::any_of(context.notices.begin(), context.notices.end(),
-                       [&](const auto& line) { return line.find(text) != std::string::npos; });
+                       [&](const auto& line) { return line.text().find(text) != std::string::npos; });
   }
   std::string notices() const {
     std::string out;
-    for (const auto& notice : context.notices) out += notice + "\n";
-    for (const auto& error : context.errors) out += error.message + "; " + error.hint + "\n";
+    for (const auto& notice : context.notices) out += notice.text() + "\n";
+    for (const auto& error : context.errors) out += error.message.text() + "; " + error.hint.text() + "\n";
     return out;
   }
   void energise() {

@@ -12,7 +12,7 @@ TEST_F(RingTest, AScanLeavesItAsItIs) {
     EXPECT_EQ(slave(i).state(), EscState::init);
     EXPECT_EQ(station(i), 0U);
   }
-  EXPECT_EQ(context.notices, std::vector<std::string>{});
+  EXPECT_EQ(context.notices, std::vector<Message>{});
 }
 
 TEST_F(RingTest, AllNodesAreThePlacesOnIt) {
@@ -53,7 +53,8 @@ TEST_F(RingTest, ARingOfAnotherMasterIsLookedAtAndToldSo) {
   EXPECT_EQ(slave(1).state(), EscState::op);
   const auto info = run_on(*other, "info", {1});
   ASSERT_EQ(context.errors.size(), 1U) << info;
-  EXPECT_EQ(context.errors.front().message, "node 1: another master works with this ring: node 2 is in OP");
+  EXPECT_EQ(context.errors.front().message.text(),
+            "node 1: another master works with this ring: node 2 is in OP");
 }
 
 TEST_F(RingTest, WhatServoctlItselfHoldsInOpIsNoOtherMasters) {

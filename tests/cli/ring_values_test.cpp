@@ -92,7 +92,7 @@ TEST_F(RingValues, PdoWatchTellsThatProcessDataHaveEnded) {
   slave().plan_fall({session_->now() + milliseconds(200), EscState::safe_op, 0x001A});
   (void)run("pdo watch", {1}, {{"--for", "800ms"}});
   ASSERT_EQ(context.errors.size(), 1U);
-  EXPECT_EQ(context.errors.front().message, "node 1: its process data have ended");
+  EXPECT_EQ(context.errors.front().message.text(), "node 1: its process data have ended");
 }
 
 class RingWithCoupler : public RingTest {
@@ -110,8 +110,7 @@ TEST_F(RingWithCoupler, AllNodesAreThoseWithObjectsAndTheOthersAreNamed) {
   open("sv2@1,sv2@2,sv2@3");
   make_coupler(0);
   EXPECT_EQ(session::nodes_present(*session_).value(), (std::vector<std::uint8_t>{2, 3}));
-  EXPECT_EQ(network().take_notices(),
-            (std::vector<std::string>{"-n all leaves out node 1: no CoE, by its SII"}));
+  EXPECT_EQ(network().take_notices(), (std::vector<Message>{"-n all leaves out node 1: no CoE, by its SII"}));
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(slave(i).state(), EscState::init);
   EXPECT_FALSE(session_->upload(1, objects::kDeviceType)) << "it was named";
   EXPECT_TRUE(session_->upload(2, objects::kDeviceType));
@@ -124,7 +123,7 @@ TEST_F(RingWithCoupler, ARingOfCouplersAloneHasNoNodesToAsk) {
   const auto none = session::nodes_present(*session_);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, Errc::negative);
-  EXPECT_EQ(none.error().message, "coe:sim: by their SII none of the 2 slaves has CoE");
+  EXPECT_EQ(none.error().message.text(), "coe:sim: by their SII none of the 2 slaves has CoE");
 }
 
 TEST_F(RingWithCoupler, OneWhoseSiiTellsNothingIsAmongAllNodes) {

@@ -98,7 +98,7 @@ TEST(Help, OfAWordOfThePromptTellsWhatItDoes) {
     EXPECT_NE(help_text("", 80)->find("\n  " + prompt_usage(word) + " "), std::string::npos) << word.name;
   }
   EXPECT_EQ(help_text("quit", 80).value(), help_text("exit", 80).value());
-  EXPECT_NE(help_text("und", 80).error().hint.find("undo"), std::string::npos);
+  EXPECT_NE(help_text("und", 80).error().hint.text().find("undo"), std::string::npos);
 }
 
 TEST(Help, OfBusTellsOfTheWordAndOfTheCommands) {

@@ -186,7 +186,7 @@ TEST_F(InputTests, SaysThatADriveDoesNotShowItsInputs) {
   const auto result = run("test io", {{"--for", "1s"}});
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, Errc::sdo_abort);
-  EXPECT_FALSE(result.error().hint.empty());
+  EXPECT_FALSE(result.error().hint.text().empty());
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class Enable : public TestedDrive, public testing::WithParamInterface<const char
  private:
   void write(ObjectAddress object, std::uint64_t value, std::size_t size) {
     const auto done = session->download(1, object, store_le(value, size));
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
   }
 };
 
@@ -39,7 +39,7 @@ TEST_P(Enable, APdoOfAnotherMasterThatCommandsTheDriveKeepsItFromBeingEnabled) {
   map(0x60FF);
   (void)run("enable");
   ASSERT_FALSE(context.errors.empty());
-  EXPECT_EQ(context.errors.front().message,
+  EXPECT_EQ(context.errors.front().message.text(),
             "another master sends PDOs with object 0x60FF:0: the drive was not enabled");
   EXPECT_FALSE(drive::is_energised(drive().power_state()));
 }
@@ -48,7 +48,7 @@ TEST_P(Enable, OneThatHoldsNothingOfTheMotionDoesNot) {
   build(std::string(GetParam()) + "@1", GetParam());
   map(0x6081);
   (void)run("enable");
-  EXPECT_TRUE(context.errors.empty()) << context.errors.front().message;
+  EXPECT_TRUE(context.errors.empty()) << context.errors.front().message.text();
   EXPECT_TRUE(drive::is_energised(drive().power_state()));
 }
 

@@ -16,7 +16,7 @@ class FdFrames : public TestedDrive {
   }
   bool is_noticed(std::string_view text) const {
     for (const auto& notice : context.notices)
-      if (notice.find(text) != std::string::npos) return true;
+      if (notice.text().find(text) != std::string::npos) return true;
     return false;
   }
 };
@@ -24,14 +24,14 @@ class FdFrames : public TestedDrive {
 TEST_F(FdFrames, AreCountedByMonitor) {
   seven_come();
   const auto result = run("monitor", {{"--for", "100ms"}});
-  ASSERT_TRUE(result) << result.error().message;
+  ASSERT_TRUE(result) << result.error().message.text();
   EXPECT_NE(report::to_json(*result).find(R"("fd_frames":7)"), std::string::npos) << report::to_json(*result);
 }
 
 TEST_F(FdFrames, AreWhyPdoWatchSawNoPdo) {
   seven_come();
   const auto result = run("pdo watch", {{"--for", "100ms"}});
-  ASSERT_TRUE(result) << result.error().message;
+  ASSERT_TRUE(result) << result.error().message.text();
   EXPECT_NE(report::to_json(*result).find(R"("fd_frames":7)"), std::string::npos) << report::to_json(*result);
   EXPECT_TRUE(is_noticed("CAN FD frames that came and were not read: 7"));
   EXPECT_FALSE(is_noticed("no PDO came: nodes send them"));

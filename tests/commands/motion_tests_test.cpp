@@ -41,8 +41,8 @@ class EveryFamily : public MotionTests, public testing::WithParamInterface<std::
 TEST_P(EveryFamily, PassesTheTestJogAndIsAskedForOnce) {
   build(GetParam() + "@1", GetParam());
   const auto result = jog({{"--turn", "10000"}});
-  ASSERT_TRUE(result.has_value()) << result.error().message << result.error().hint;
-  EXPECT_TRUE(context.errors.empty()) << context.errors.front().message;
+  ASSERT_TRUE(result.has_value()) << result.error().message.text() << result.error().hint.text();
+  EXPECT_TRUE(context.errors.empty()) << context.errors.front().message.text();
   EXPECT_EQ(criterion(result, "completed"), "passed \"yes\"");
   EXPECT_TRUE(criterion(result, "direction_backward").starts_with("passed"));
   EXPECT_EQ(questions.size(), 1U);
@@ -116,7 +116,7 @@ TEST_F(MotionTests, JogEndsSafelyWhenInterrupted) {
 TEST_F(MotionTests, HomePassesAndShowsEachRun) {
   build(kSwitchesObeyed, "sv2");
   const auto result = run("test home", {{"--repeat", "3"}, {"--limit", "3000rpm"}, kPanel});
-  ASSERT_TRUE(result.has_value()) << result.error().message << result.error().hint;
+  ASSERT_TRUE(result.has_value()) << result.error().message.text() << result.error().hint.text();
   EXPECT_EQ(criterion(result, "found"), "passed 3");
   EXPECT_EQ(criterion(result, "spread"), "passed 0");
   EXPECT_TRUE(context.errors.empty());
@@ -213,8 +213,10 @@ TEST_F(MotionTests, AllMovesNothingWhereTheHomingWouldBeRefusedLater) {
   EXPECT_TRUE(questions.empty());
   ASSERT_FALSE(context.errors.empty());
   EXPECT_EQ(context.errors.front().code, Errc::refused);
-  EXPECT_TRUE(context.errors.front().message.starts_with("`test home` cannot be run, so nothing is moved"));
-  EXPECT_TRUE(context.errors.front().hint.ends_with("add --no-home")) << context.errors.front().hint;
+  EXPECT_TRUE(
+      context.errors.front().message.text().starts_with("`test home` cannot be run, so nothing is moved"));
+  EXPECT_TRUE(context.errors.front().hint.text().ends_with("add --no-home"))
+      << context.errors.front().hint.text();
 }
 
 TEST_F(MotionTests, AllRunsEachTest) {

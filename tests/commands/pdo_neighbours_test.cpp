@@ -26,7 +26,7 @@ class Neighbours : public TestedDrive {
     const auto result = map(pdo, object, can_id);
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, Errc::refused);
-    EXPECT_NE(result.error().message.find(reason), std::string::npos) << result.error().message;
+    EXPECT_NE(result.error().message.text().find(reason), std::string::npos) << result.error().message.text();
     EXPECT_EQ(drive().value({0x1800, 1}), before);
     EXPECT_TRUE(questions.empty());
   }
@@ -46,11 +46,11 @@ TEST_F(Neighbours, TwoDrivesAreNotCommandedByOneFrame) {
 
 TEST_F(Neighbours, ALinkFromTheTpdoOfAnotherIsTold) {
   const auto result = map("RPDO2", "target_velocity", "0x182");
-  ASSERT_TRUE(result) << result.error().message;
+  ASSERT_TRUE(result) << result.error().message.text();
   ASSERT_FALSE(context.notices.empty());
-  EXPECT_NE(context.notices.front().find("RPDO2 receives what TPDO1 of node 2 sends with 0x182"),
+  EXPECT_NE(context.notices.front().text().find("RPDO2 receives what TPDO1 of node 2 sends with 0x182"),
             std::string::npos)
-      << context.notices.front();
+      << context.notices.front().text();
 }
 
 TEST_F(Neighbours, WhereNobodyIsNothingIsInTheWay) {
@@ -64,9 +64,9 @@ TEST_F(Neighbours, SeveralNodesAreNotGivenOneCanIdByAFile) {
   std::ofstream(file) << "format = 1\n[[pdo]]\npdo = \"RPDO1\"\ncob_id = \"0x205\"\nvalid = true\n";
   const auto result = run("pdo apply", {{"file", file.string()}});
   ASSERT_FALSE(result);
-  EXPECT_EQ(result.error().code, Errc::refused) << result.error().message;
-  EXPECT_NE(result.error().message.find("one frame would control both"), std::string::npos)
-      << result.error().message;
+  EXPECT_EQ(result.error().code, Errc::refused) << result.error().message.text();
+  EXPECT_NE(result.error().message.text().find("one frame would control both"), std::string::npos)
+      << result.error().message.text();
 }
 
 class SyncBesideOthers : public TestedDrive {
@@ -92,9 +92,9 @@ TEST_F(SyncBesideOthers, IsNotProduced) {
 TEST_F(SyncBesideOthers, IsToldWhereTheOtherComesLater) {
   from = sim_bus.now() + std::chrono::milliseconds(600);
   const auto result = run("sync start", {{"--for", "1s"}});
-  ASSERT_TRUE(result) << result.error().message;
+  ASSERT_TRUE(result) << result.error().message.text();
   ASSERT_EQ(context.notices.size(), 1U);
-  EXPECT_NE(context.notices.front().find("another producer sent"), std::string::npos);
+  EXPECT_NE(context.notices.front().text().find("another producer sent"), std::string::npos);
 }
 
 }  // namespace

@@ -73,8 +73,10 @@ class World {
     try {
       const auto done = find_command(command)->run(context, arguments);
       frames = counted->frames();
-      for (const auto& notice : context.notices) notices += notice + "\n";
-      error = !done ? done.error().message : context.errors.empty() ? "" : context.errors.front().message;
+      for (const auto& notice : context.notices) notices += notice.text() + "\n";
+      error = !done                    ? done.error().message.text()
+              : context.errors.empty() ? ""
+                                       : context.errors.front().message.text();
       return done && context.errors.empty();
     } catch (const Killed&) {
       return false;

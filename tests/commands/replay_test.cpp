@@ -32,7 +32,7 @@ class Replay : public TestedDrive {
   }
   bool is_noticed(std::string_view text) const {
     for (const auto& notice : context.notices)
-      if (notice.find(text) != std::string::npos) return true;
+      if (notice.text().find(text) != std::string::npos) return true;
     return false;
   }
   std::string question(std::string_view log) {
@@ -82,8 +82,8 @@ TEST_F(Replay, ADriveThatIsInFaultAfterCtrlCIsAnError) {
   };
   ASSERT_FALSE(replay(std::string(kEnable) + "(9.000000) can0 080#\n"));
   ASSERT_FALSE(context.errors.empty());
-  EXPECT_NE(context.errors.front().message.find("de-energised now, but in fault"), std::string::npos)
-      << context.errors.front().message;
+  EXPECT_NE(context.errors.front().message.text().find("de-energised now, but in fault"), std::string::npos)
+      << context.errors.front().message.text();
   EXPECT_FALSE(is_noticed("stopped and disabled"));
 }
 
@@ -108,7 +108,7 @@ TEST_F(Replay, ADriveThatFallsSilentMayStillBeEnergised) {
   };
   ASSERT_FALSE(replay(std::string(kEnable) + "(9.000000) can0 080#\n"));
   ASSERT_FALSE(context.errors.empty());
-  EXPECT_TRUE(context.errors.front().message.starts_with("NODE 1 MAY STILL BE ENERGISED"));
+  EXPECT_TRUE(context.errors.front().message.text().starts_with("NODE 1 MAY STILL BE ENERGISED"));
 }
 
 TEST_F(Replay, CountsWhateverCanMoveAMotor) {
@@ -162,11 +162,11 @@ TEST_F(Replay, AnSdoThatIsRefusedOrNotAnsweredFails) {
   ASSERT_TRUE(replay("(0.0) can0 601#2BFF200001000000\n(0.1) can0 601#4041600000000000\n"));
   ASSERT_TRUE(failed());
   EXPECT_EQ(context.errors.front().object, (ObjectAddress{0x20FF, 0}));
-  EXPECT_NE(context.errors.front().message.find("0x06020000"), std::string::npos);
+  EXPECT_NE(context.errors.front().message.text().find("0x06020000"), std::string::npos);
   drive().wire_faults().silent = true;
   ASSERT_TRUE(replay("(0.0) can0 601#4041600000000000\n"));
   EXPECT_TRUE(failed());
-  EXPECT_NE(context.errors.front().message.find("not answered"), std::string::npos);
+  EXPECT_NE(context.errors.front().message.text().find("not answered"), std::string::npos);
 }
 
 TEST_F(Replay, AnswersOfTheRecordingAreNoAnswersOfADrive) {

@@ -48,7 +48,7 @@ class Sampling : public TestedDrive {
   }
   bool is_noticed(std::string_view text) const {
     return std::any_of(context.notices.begin(), context.notices.end(),
-                       [&](const std::string& notice) { return notice.find(text) != std::string::npos; });
+                       [&](const Message& notice) { return notice.text().find(text) != std::string::npos; });
   }
   std::vector<std::string> csv_lines(const std::string& path) const {
     std::ifstream file(path);
@@ -73,7 +73,7 @@ TEST_P(SamplingEveryFamily, MappingIsPutBackHoweverManyObjectsThereAre) {
     context.notices.clear();
     (void)run("scope", words);
     mapped += !is_noticed("not mapped");
-    EXPECT_TRUE(context.errors.empty()) << n << ": " << context.errors.front().message;
+    EXPECT_TRUE(context.errors.empty()) << n << ": " << context.errors.front().message.text();
     EXPECT_EQ(pdo_values(), before) << n << " objects";
     EXPECT_EQ(drive().nmt_state(), canopen::NmtState::operational);
   }
@@ -123,8 +123,8 @@ TEST_F(Sampling, WhatCouldNotBePutBackIsAnError) {
   bus->on_receive = [&](can::Frame&) { drive().wire_faults().silent |= session->now() > end; };
   (void)run("scope", {{"object", "0x6064"}, {"--map", "true"}, {"--for", "100ms"}});
   const bool told = std::any_of(context.errors.begin(), context.errors.end(), [](const Error& error) {
-    return error.message.find("TPDO2 could not be restored: node 1") == 0 &&
-           error.message.find("0x1A01:1") != std::string::npos;
+    return error.message.text().find("TPDO2 could not be restored: node 1") == 0 &&
+           error.message.text().find("0x1A01:1") != std::string::npos;
   });
   EXPECT_TRUE(told);
 }
@@ -228,7 +228,7 @@ class SamplingAfterARestart : public Sampling {
     };
   }
   static std::string json_of(const Result<report::Value>& result) {
-    return result ? report::to_json(*result) : result.error().message;
+    return result ? report::to_json(*result) : result.error().message.text();
   }
 };
 

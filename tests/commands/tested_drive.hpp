@@ -73,7 +73,7 @@ class TestedDrive : public testing::Test {
   void build(const std::string& spec, const std::string& family) {
     const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     auto built = sim::build_cell(spec, folders, sim_bus.now());
-    ASSERT_TRUE(built) << built.error().message;
+    ASSERT_TRUE(built) << built.error().message.text();
     cell = std::move(*built);
     sim::commission(cell);
     for (const auto& one : cell.drives) sim_bus.attach(*one);
@@ -106,7 +106,7 @@ class TestedDrive : public testing::Test {
   /// `failed 2`: verdict and figure of a criterion, as JSON says them; of the last test that has it.
   static std::string criterion(const Result<report::Value>& result, std::string_view id) {
     EXPECT_TRUE(result.has_value());
-    if (!result) return result.error().message;
+    if (!result) return result.error().message.text();
     const auto json = *report::parse_json(report::to_json(*result), "result");
     std::string out = "none";
     for (const auto& test : std::get<report::List>(json.data()))

@@ -70,8 +70,11 @@ class Units : public testing::Test {
     show::Willing willing;
     context.audience = &willing;
     auto done = find_command(command)->run(context, arguments);
-    notices = fmt::format("{}", fmt::join(context.notices, "\n"));
-    error = !done ? done.error().message : context.errors.empty() ? "" : context.errors.front().message;
+    notices.clear();
+    for (const auto& notice : context.notices) append(notices, notice.text(), "\n");
+    error = !done                    ? done.error().message.text()
+            : context.errors.empty() ? ""
+                                     : context.errors.front().message.text();
     return done;
   }
   bool learn() {

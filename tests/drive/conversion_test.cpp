@@ -54,7 +54,7 @@ RC_GTEST_PROP(Conversions, OfTheOwnUnitComeBackExactly, ()) {
   }
   const auto text = fmt::format("{:.17g}{}", scaled(m, value), m.unit);
   const auto back = parse_quantity(m, text);
-  RC_LOG() << text << (back ? "" : ": " + back.error().message);
+  RC_LOG() << text << (back ? "" : ": " + back.error().message.text());
   RC_ASSERT(back.has_value());
   RC_ASSERT(scaled(m, *back) == scaled(m, value));
   if (m.encoding == od::Encoding::plain) RC_ASSERT(od::compare_numbers(*back, value) == 0);
@@ -72,7 +72,7 @@ RC_GTEST_PROP(Conversions, ByTheDrivesGearComeBackExactly, ()) {
   RC_ASSERT(shown.has_value());
   const auto back = parse_quantity(m, fmt::format("{:.14g}{}", shown->value, shown->unit));
   RC_LOG() << fmt::format("{} {:.14g}{}: {}", m.unit, shown->value, shown->unit,
-                          back ? "" : back.error().message);
+                          back ? "" : back.error().message.text());
   RC_ASSERT(back.has_value());
   RC_ASSERT(od::compare_numbers(*back, value) == 0);
 }

@@ -21,7 +21,7 @@ class DriveData : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     auto loaded = load_profile(GetParam(), kFolders);
-    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_TRUE(loaded) << loaded.error().message.text();
     profile = std::move(*loaded);
     if (profile.made_of_dictionary) profile.parameters.clear();  // These tests are about tables.
   }
@@ -205,7 +205,7 @@ TEST_P(DriveData, FindsEveryNameItOffers) {
     const auto* parameter = profile.parameter(name);
     if (parameter != nullptr && !parameter->object) continue;
     const auto target = resolve(&profile, name);
-    EXPECT_TRUE(target) << name << ": " << (target ? "" : target.error().message);
+    EXPECT_TRUE(target) << name << ": " << (target ? "" : target.error().message.text());
   }
 }
 

@@ -17,12 +17,12 @@ namespace fs = std::filesystem;
 
 std::string refused_words(std::string_view csv) {
   const auto words = parse_everyday_words(csv, "f.words.csv");
-  return words ? "-" : words.error().message;
+  return words ? "-" : words.error().message.text();
 }
 
 TEST(EverydayWords, ReadsThingsAndWhatTheyAreCalled) {
   const auto words = parse_everyday_words("thing,words,manual\njog,jog; inching;点动,\nnotch,,none\n", "f");
-  ASSERT_TRUE(words) << words.error().message;
+  ASSERT_TRUE(words) << words.error().message.text();
   EXPECT_EQ(*words,
             (std::vector<EverydayWords>{{"jog", {"jog", "inching", "点动"}, false}, {"notch", {}, true}}));
 }
@@ -62,7 +62,7 @@ TEST(EverydayWords, OfAFamilyNameThingsThatTheStandardFileNames) {
   const auto standard = load_profile("cia402", folders);
   ASSERT_TRUE(standard);
   const auto common = load_everyday_words(*standard, folders);
-  ASSERT_TRUE(common) << common.error().message;
+  ASSERT_TRUE(common) << common.error().message.text();
   std::set<std::string> names;
   for (const auto& thing : *common) names.insert(thing.name);
   EXPECT_GT(names.size(), 30U);
@@ -70,7 +70,7 @@ TEST(EverydayWords, OfAFamilyNameThingsThatTheStandardFileNames) {
     const auto profile = load_profile(manual.family, folders);
     ASSERT_TRUE(profile) << manual.family;
     const auto words = load_everyday_words(*profile, folders);
-    ASSERT_TRUE(words) << words.error().message;
+    ASSERT_TRUE(words) << words.error().message.text();
     for (const auto& thing : *words) EXPECT_TRUE(names.contains(thing.name)) << manual.family << thing.name;
   }
 }
@@ -86,7 +86,7 @@ TEST(EverydayWords, ThatAManualLacksStandNowhereInIt) {
     const auto profile = load_profile(manual.family, folders);
     ASSERT_TRUE(profile) << manual.family;
     const auto words = load_everyday_words(*profile, folders);
-    ASSERT_TRUE(words) << words.error().message;
+    ASSERT_TRUE(words) << words.error().message.text();
     std::ostringstream content;
     content << std::ifstream(manuals / manual.file).rdbuf();
     const auto text = bare_text(content.str());

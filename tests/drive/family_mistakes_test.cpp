@@ -26,7 +26,7 @@ class FamilyMistakes : public testing::Test {
   std::vector<Mistake> found() const { return mistakes_of({"p10", folder / "p10"}, folders); }
   std::string messages() const {
     std::string out;
-    for (const auto& mistake : found()) out += mistake.message + "\n";
+    for (const auto& mistake : found()) out += mistake.message.text() + "\n";
     return out;
   }
 
@@ -40,7 +40,7 @@ TEST_F(FamilyMistakes, TheFamiliesOfTheProgramHaveNone) {
   const auto families = find_families(std::span(folders).last(1));
   ASSERT_FALSE(families.empty());
   for (const auto& family : families)
-    for (const auto& mistake : mistakes_of(family, folders)) ADD_FAILURE() << mistake.message;
+    for (const auto& mistake : mistakes_of(family, folders)) ADD_FAILURE() << mistake.message.text();
 }
 
 TEST_F(FamilyMistakes, OfTheRulesAllAreNamedWithTheirLine) {
@@ -67,9 +67,9 @@ TEST_F(FamilyMistakes, OfTheTablesAllAreNamedWithTheirLine) {
   EXPECT_EQ(
       messages(),
       "p10.params.csv:1: column 'colour' is unknown\n"
-      "p10.params.csv:2: column type: 'u9' is not a data type: bool, i8, i16, i24, i32, i64, u8, u16, u24, "
+      "p10.params.csv:2: column 'type': 'u9' is not a data type: bool, i8, i16, i24, i32, i64, u8, u16, u24, "
       "u32, u64, f32, f64, string, bytes, domain or time\n"
-      "p10.params.csv:2: column access: 'rx' is not ro, rw, wo or const\n"
+      "p10.params.csv:2: column 'access': 'rx' is not ro, rw, wo or const\n"
       "p10.params.csv:3: A2 has no name\n"
       "p10.params.csv:4: A1 appears twice\n"
       "p10.params.csv:5: 2 cells, but the header names 5 columns\n"
@@ -84,7 +84,7 @@ TEST_F(FamilyMistakes, WhatNewFamiliesAreRefusedForIsFoundInOnesThatAreThere) {
   write("p10.faults.csv", "code,name\n2310,A\n0x3210,B\n0x3210,C\n");
   EXPECT_EQ(messages(),
             "p10.params.csv:2: A1: the default 9 is above the maximum 5 (raw numbers)\n"
-            "p10.faults.csv:2: column code: '2310' is not a hexadecimal code of 16 bits, such as 0x8130\n"
+            "p10.faults.csv:2: column 'code': '2310' is not a hexadecimal code of 16 bits, such as 0x8130\n"
             "p10.faults.csv:4: 0x3210 is in line 3 as well\n");
   EXPECT_EQ(count_errors(found()), 3U);
   write("p10.fault.csv", "");
@@ -115,7 +115,7 @@ TEST_F(FamilyMistakes, AParameterStandsInTheDataSheetInItsSize) {
   write("p10.params.csv", "id,object,type,access,name\nA1,0x2001:00,u32,rw,N\nA2,0x2002:00,u16,rw,N\n");
   std::string errors;
   for (const auto& mistake : found())
-    if (mistake.breaks) errors += mistake.message + "\n";
+    if (mistake.breaks) errors += mistake.message.text() + "\n";
   EXPECT_EQ(errors,
             "p10.params.csv:2: A1: type u32, but 0x2001:0 is u16 in the data sheet\n"
             "p10.params.csv:3: A2: object 0x2002:0 is not in the data sheet\n");
@@ -141,7 +141,7 @@ TEST_F(FamilyMistakes, ATypeOfAnotherSignAndNumbersThatAreOneOrHideAnObjectAreNa
       << messages();
   const auto loaded = load_profile("p10", folders);
   ASSERT_FALSE(loaded) << "one number for two parameters";
-  EXPECT_NE(loaded.error().message.find("A-01 is the same parameter number as A1 in line 2"),
+  EXPECT_NE(loaded.error().message.text().find("A-01 is the same parameter number as A1 in line 2"),
             std::string::npos);
 }
 
@@ -161,7 +161,7 @@ TEST_F(FamilyMistakes, AFileMayBuildOnTheFamilyOfItsName) {
   fs::create_directories(folder / "own/inner");
   write("own/inner/p10.toml", "format = 1\nfamily = \"p10\"\nparent = \"p10\"\n");
   const auto loaded = load_profile((folder / "own/inner/p10.toml").string(), folders);
-  EXPECT_TRUE(loaded) << loaded.error().message;
+  EXPECT_TRUE(loaded) << loaded.error().message.text();
 }
 
 TEST_F(FamilyMistakes, AParentThatIsMissingOrALoopIsOne) {
@@ -174,7 +174,8 @@ TEST_F(FamilyMistakes, AParentThatIsMissingOrALoopIsOne) {
   EXPECT_EQ(messages(), "p10.toml: parent = \"p11\": the parents form a loop: p10 → p11 → p10\n");
   const auto loaded = load_profile("p10", folders);
   ASSERT_FALSE(loaded);
-  EXPECT_EQ(loaded.error().message, "p10.toml: parent = \"p11\": the parents form a loop: p10 → p11 → p10");
+  EXPECT_EQ(loaded.error().message.text(),
+            "p10.toml: parent = \"p11\": the parents form a loop: p10 → p11 → p10");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ TEST(Faults, AreReadWithTheirUnknownsLeftOpen) {
                        "0x8130,,AL.09,fault,yes,Heartbeat lost,心跳超时,\"cable, master\",,,820\n"
                        ",,AL.28,warning,,Software limit,软件限位,,,code,5796\n",
                    "f.csv");
-  ASSERT_TRUE(faults) << faults.error().message;
+  ASSERT_TRUE(faults) << faults.error().message.text();
   ASSERT_EQ(faults->size(), 2U);
   EXPECT_EQ((*faults)[0].code, 0x8130);
   EXPECT_EQ((*faults)[0].resettable, true);
@@ -29,28 +29,29 @@ void expect_refused(std::string_view row, std::string_view message) {
   const auto faults = parse_faults(std::string(kHeader) + std::string(row), "f.csv");
   ASSERT_FALSE(faults) << row;
   EXPECT_EQ(faults.error().code, Errc::file);
-  EXPECT_EQ(faults.error().message, message);
+  EXPECT_EQ(faults.error().message.text(), message);
 }
 
 TEST(Faults, WithABadCellAreRefusedWithLineAndColumn) {
   expect_refused("0x18130,,,fault,,N,,,,,1\n",
-                 "f.csv:2: column code: '0x18130' is not a hexadecimal code of 16 bits, such as 0x8130");
-  expect_refused("0x8130,,,oops,,N,,,,,1\n", "f.csv:2: column kind: 'oops' is not fault, warning or status");
+                 "f.csv:2: column 'code': '0x18130' is not a hexadecimal code of 16 bits, such as 0x8130");
+  expect_refused("0x8130,,,oops,,N,,,,,1\n",
+                 "f.csv:2: column 'kind': 'oops' is not fault, warning or status");
   expect_refused("0x8130,,,fault,maybe,N,,,,,1\n",
-                 "f.csv:2: column resettable: 'maybe' is not yes, no or empty");
-  expect_refused("0x8130,,,fault,,,,,,,1\n", "f.csv:2: column name: '' is not a name");
-  expect_refused("0x8130,,,fault,,N,,,,,x\n", "f.csv:2: column line: 'x' is not a line number");
+                 "f.csv:2: column 'resettable': 'maybe' is not yes, no or empty");
+  expect_refused("0x8130,,,fault,,,,,,,1\n", "f.csv:2: column 'name': '' is not a name");
+  expect_refused("0x8130,,,fault,,N,,,,,x\n", "f.csv:2: column 'line': 'x' is not a line number");
 }
 
 TEST(Faults, ACodeOfBareDigitsMayBeDecimalOrHexadecimal) {
   const auto bare = parse_faults("code,name\n2310,N\n", "f.csv");
   ASSERT_FALSE(bare);
   EXPECT_EQ(bare.error().message,
-            "f.csv:2: column code: '2310' is not a hexadecimal code of 16 bits, such as 0x8130");
+            "f.csv:2: column 'code': '2310' is not a hexadecimal code of 16 bits, such as 0x8130");
   EXPECT_EQ(bare.error().hint, "write 0x2310 if these digits are hexadecimal, 0x0906 if they are decimal");
   EXPECT_EQ(parse_faults("code,name\n12816,N\n", "f.csv").error().hint, "") << "more digits than a code has";
   const auto marked = parse_faults("code,name\n2310h,N\n0x3210,O\n", "f.csv");
-  ASSERT_TRUE(marked) << marked.error().message;
+  ASSERT_TRUE(marked) << marked.error().message.text();
   EXPECT_EQ(marked->front().code, 0x2310);
 }
 

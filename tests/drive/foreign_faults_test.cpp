@@ -20,7 +20,7 @@ TEST(ForeignFaults, FaultsOfAnyKind) {
       "Fault code,Display,Name,Cause,Remedy,Reset\n2310h,Er01,Overcurrent,Short,Check,Y\nE05,,Encoder,,,\n0x8611,,"
       "Following,,,no\n",
       "f.csv", errors);
-  ASSERT_TRUE(errors.empty()) << errors.front().message;
+  ASSERT_TRUE(errors.empty()) << errors.front().message.text();
   EXPECT_EQ(table.csv,
             "code,extra,panel,kind,resettable,name,name_zh,check,check_zh\n"
             "0x2310,,Er01,,yes,Overcurrent,,Short; Check,\n"
@@ -28,8 +28,8 @@ TEST(ForeignFaults, FaultsOfAnyKind) {
             "0x8611,,,,no,Following,,,\n");
   (void)convert_faults("code,name,reset\n0x2310,A,maybe\n0x2311,,no\n", "f.csv", errors);
   ASSERT_EQ(errors.size(), 2U);
-  EXPECT_EQ(errors[0].message, "f.csv:2: column resettable: 'maybe' is not yes, no or empty");
-  EXPECT_EQ(errors[1].message, "f.csv:3: column name: '' is not a name");
+  EXPECT_EQ(errors[0].message.text(), "f.csv:2: column 'resettable': 'maybe' is not yes, no or empty");
+  EXPECT_EQ(errors[1].message.text(), "f.csv:3: column 'name': '' is not a name");
 }
 
 TEST(ForeignFaults, BareDigitsAreNoCode) {
@@ -43,13 +43,13 @@ TEST(ForeignFaults, BareDigitsAreNoCode) {
     const auto code = convert_fault_table(formatted("{},Name\n2310,A\n", heading));
     EXPECT_EQ(
         code.wrong(),
-        "f.csv:2: column code: '2310' is not a hexadecimal code of 16 bits, such as 0x8130; write 0x2310 if these "
+        "f.csv:2: column 'code': '2310' is not a hexadecimal code of 16 bits, such as 0x8130; write 0x2310 if these "
         "digits are hexadecimal, 0x0906 if they are decimal\n")
         << heading;
   }
   EXPECT_NE(convert_fault_table("EMCY code,Name\nEr01,A\n")
                 .wrong()
-                .find("f.csv:2: column code: 'Er01' is not a hex"),
+                .find("f.csv:2: column 'code': 'Er01' is not a hex"),
             std::string::npos);
   EXPECT_NE(convert_fault_table("Error code (dec),Name\n8976,A\n").wrong().find("the base of numbers"),
             std::string::npos);
@@ -77,7 +77,7 @@ TEST(ForeignFaults, WhatMayBeACodeOrAPanelTextIsNamed) {
 TEST(ForeignFaults, OnlyKnownWordsAreKinds) {
   for (const auto* text : {"非故障", "Warning (fault)", "报警"}) {
     const auto wrong = convert_fault_table(formatted("code,kind,name\n0x2310,{},A\n", text)).wrong();
-    EXPECT_NE(wrong.find(formatted("f.csv:2: column kind: '{}' is not", text)), std::string::npos) << wrong;
+    EXPECT_NE(wrong.find(formatted("f.csv:2: column 'kind': '{}' is not", text)), std::string::npos) << wrong;
   }
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 std::string first_error(std::string_view csv) {
   const auto out = convert(csv);
-  return out.errors.empty() ? std::string() : out.errors.front().message;
+  return out.errors.empty() ? std::string() : out.errors.front().message.text();
 }
 
 bool refuses(std::string_view csv, std::string_view message) {
@@ -29,9 +29,9 @@ TEST(ForeignTables, ChineseHeadingsGbkAndSemicolonsAreRead) {
       "P1-01;\xD4\xF6\xD2\xE6;0.1Hz;40.0;0.1~200.0;\xC1\xA2\xBC\xB4\xC9\xFA\xD0\xA7\n";
   std::vector<Error> errors;
   const auto table = convert_parameters(gbk, "t.csv", foreign_sheet().dictionary, errors);
-  ASSERT_TRUE(errors.empty()) << errors.front().message;
+  ASSERT_TRUE(errors.empty()) << errors.front().message.text();
   const auto parameters = od::parse_parameters(table.csv, "p.csv");
-  ASSERT_TRUE(parameters) << parameters.error().message;
+  ASSERT_TRUE(parameters) << parameters.error().message.text();
   ASSERT_EQ(parameters->size(), 1U);
   const auto& gain = parameters->front();
   EXPECT_EQ(gain.object, (ObjectAddress{0x2001, 0})) << "by the number in the name of the object";
@@ -64,10 +64,10 @@ TEST(ForeignTables, ADefaultThatTheDataSheetHasRawShowsTheUnit) {
 TEST(ForeignTables, WhatIsNotUnderstoodIsNamedByItsLine) {
   EXPECT_EQ(
       first_error("Title\n\nNo.,Type,Default\nP1-01,u99,1\n"),
-      "t.csv:4: column type: 'u99' is not a data type: bool, i8, i16, i24, i32, i64, u8, u16, u24, u32, u64, "
+      "t.csv:4: column 'type': 'u99' is not a data type: bool, i8, i16, i24, i32, i64, u8, u16, u24, u32, u64, "
       "f32, f64, string, bytes, domain or time");
   EXPECT_EQ(first_error("No.,Default\nP1-01,abc\n"),
-            "t.csv:2: column default: 'abc' is not a value of u16: 'abc' is not a number");
+            "t.csv:2: column 'default': 'abc' is not a value of u16: 'abc' is not a number");
   EXPECT_EQ(first_error("No.,Range\nP1-01,many\n"), "t.csv:2: the range 'many' is not understood");
   EXPECT_EQ(first_error("No.,Index\nP1-01,2099h\n"),
             "t.csv:2: P1-01: object 0x2099:00 is not in the data sheet");
@@ -97,7 +97,7 @@ TEST(ForeignTables, ASubIndexOfTwoDigitsIsNoGuess) {
   refuses("No.,Index\nP2,2004h-10\n", "t.csv:2: sub-index '10' may be decimal or hexadecimal");
   refuses("No.,Index,Sub\nP2,,1\n", "t.csv:2: sub-index 1 without an index");
   refuses("No.,Index,Sub\nP1-01,2001h,sub2\n",
-          "t.csv:2: column object: '2001h:sub2' is not an object such as");
+          "t.csv:2: column 'object': '2001h:sub2' is not an object such as");
   for (const auto* sub : {"0Ah", "0x0A", "0A"}) {
     const auto out = convert(formatted("No.,Index,Sub\nP2,2004h,{}\n", sub));
     EXPECT_EQ(out.wrong(), "") << sub;
@@ -218,7 +218,7 @@ TEST(ForeignTables, NoCellIsDropped) {
 TEST(ForeignTables, OnlyKnownWordsAreEffects) {
   for (const auto* text : {"运行中不可更改", "非立即生效", "Not immediate", "unknown", "stop and restart"})
     refuses(formatted("No.,Effective\nP1-01,{}\n", text),
-            formatted("t.csv:2: column effect: '{}' is not immediate, restart, standstill or empty", text));
+            formatted("t.csv:2: column 'effect': '{}' is not immediate, restart, standstill or empty", text));
 }
 
 TEST(ForeignTables, TheDataSheetDecidesTypeAndAccess) {

@@ -34,12 +34,12 @@ struct Converted {
   /// Messages and hints, a line each.
   std::string wrong() const {
     std::string out;
-    for (const auto& error : errors) out += error.message + "; " + error.hint + "\n";
+    for (const auto& error : errors) out += error.message.text() + "; " + error.hint.text() + "\n";
     return out;
   }
   std::string notices() const {
     std::string out;
-    for (const auto& notice : table.notices) out += notice + "\n";
+    for (const auto& notice : table.notices) out += notice.text() + "\n";
     return out;
   }
 };

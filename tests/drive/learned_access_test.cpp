@@ -90,10 +90,10 @@ TEST_F(LearnedAccess, StaysUnknownInAFamilyMadeOfTheFile) {
   family.files.emplace_back("q1.eds", text);
   folders.insert(folders.begin(), root);
   const auto place = write_family(family, root, folders);
-  EXPECT_TRUE(place) << place.error().message;
+  EXPECT_TRUE(place) << place.error().message.text();
   const auto profile = load_profile("q1", folders);
   fs::remove_all(root);
-  ASSERT_TRUE(profile) << profile.error().message;
+  ASSERT_TRUE(profile) << profile.error().message.text();
   EXPECT_TRUE(is_unknown(*profile, 0x2001));
   EXPECT_FALSE(is_unknown(*profile, 0x6841));
 }

@@ -7,7 +7,7 @@ namespace {
 
 TEST(LoadUnit, TurnsWhatTheLoadMovesIntoRevolutionsOfTheMotor) {
   const auto load = parse_load_unit("20 mm", 10);
-  ASSERT_TRUE(load) << load.error().message;
+  ASSERT_TRUE(load) << load.error().message.text();
   EXPECT_EQ(in_revolutions(*load, "20mm"), "10rev");
   EXPECT_EQ(in_revolutions(*load, "-2 cm"), "-10rev");
   EXPECT_EQ(in_revolutions(*load, "300mm/s"), "150rev/s");
@@ -18,7 +18,7 @@ TEST(LoadUnit, TurnsWhatTheLoadMovesIntoRevolutionsOfTheMotor) {
 
 TEST(LoadUnit, TellsWhatTheMotorMovesInItsUnit) {
   const auto load = parse_load_unit("-360 tabledeg", 100);
-  ASSERT_TRUE(load) << load.error().message;
+  ASSERT_TRUE(load) << load.error().message.text();
   const auto way = of_load(*load, 3600, "deg");
   ASSERT_TRUE(way);
   EXPECT_DOUBLE_EQ(way->value, -36);

@@ -56,7 +56,8 @@ Profile maker_profile() {
 std::string place(std::string_view text, Match match = Match::whole) {
   const auto profile = maker_profile();
   const auto target = resolve(&profile, text, match);
-  return target ? to_string(target->address) : target.error().message + " / " + target.error().hint;
+  return target ? to_string(target->address)
+                : target.error().message.text() + " / " + target.error().hint.text();
 }
 
 TEST(MakerParameters, AreTheManufacturersRangeAndNoNumberMeansTwo) {

@@ -15,7 +15,7 @@ namespace {
 
 Profile load(std::string_view family) {
   auto profile = load_profile(family, kFolders);
-  EXPECT_TRUE(profile) << profile.error().message;
+  EXPECT_TRUE(profile) << profile.error().message.text();
   return profile ? std::move(*profile) : Profile{};
 }
 

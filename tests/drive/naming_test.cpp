@@ -46,7 +46,7 @@ Profile profile() {
 
 ObjectAddress found(const Profile& p, std::string_view text) {
   const auto target = resolve(&p, text);
-  EXPECT_TRUE(target) << text << ": " << (target ? "" : target.error().message);
+  EXPECT_TRUE(target) << text << ": " << (target ? "" : target.error().message.text());
   return target ? target->address : ObjectAddress{};
 }
 
@@ -65,7 +65,7 @@ TEST(Resolve, WithoutADictionarySaysHowToGetOne) {
   const auto target = resolve(nullptr, "statusword");
   ASSERT_FALSE(target);
   EXPECT_EQ(target.error().code, Errc::usage);
-  EXPECT_NE(target.error().hint.find("-d FAMILY"), std::string::npos);
+  EXPECT_NE(target.error().hint.text().find("-d FAMILY"), std::string::npos);
 }
 
 TEST(Resolve, FindsObjectsAndEntriesByName) {
@@ -87,26 +87,27 @@ TEST(Resolve, OffersAllMeaningsOfAnAmbiguousName) {
   const auto p = profile();
   const auto target = resolve(&p, "homing_speeds");
   ASSERT_FALSE(target);
-  EXPECT_EQ(target.error().message, "'homing_speeds' is ambiguous: 2 meanings");
+  EXPECT_EQ(target.error().message.text(), "'homing_speeds' is ambiguous: 2 meanings");
   EXPECT_EQ(
-      target.error().hint,
+      target.error().hint.text(),
       "write homing_speeds.speed_during_search_for_switch or homing_speeds.speed_during_search_for_zero");
   EXPECT_FALSE(resolve(&p, "homing_speeds.search"));
 }
 
 TEST(Resolve, OffersTheNearestNameForAMisspeltOne) {
   const auto p = profile();
-  EXPECT_EQ(resolve(&p, "statuswrod").error().hint, "did you mean statusword?");
-  EXPECT_EQ(resolve(&p, "Xn0203").error().hint, "did you mean Xn0202 or Xn0009?");
+  EXPECT_EQ(resolve(&p, "statuswrod").error().hint.text(), "did you mean statusword?");
+  EXPECT_EQ(resolve(&p, "Xn0203").error().hint.text(), "did you mean Xn0202 or Xn0009?");
 }
 
 TEST(Resolve, RefusesAParameterThatHasNoObject) {
   const auto p = profile();
   const auto target = resolve(&p, "Xn9");
   ASSERT_FALSE(target);
-  EXPECT_EQ(target.error().message, "Xn0009 Panel brightness has no CANopen object");
+  EXPECT_EQ(target.error().message.text(), "Xn0009 Panel brightness has no CANopen object");
   EXPECT_TRUE(resolve_parameter(p, "Xn9"));
-  EXPECT_EQ(resolve(&p, "panel brightness").error().message, target.error().message) << "by its name too";
+  EXPECT_EQ(resolve(&p, "panel brightness").error().message.text(), target.error().message.text())
+      << "by its name too";
 }
 
 TEST(CanonicalId, IsTheSameForAllSpellingsAndOnlyForThem) {
@@ -145,8 +146,8 @@ TEST(Resolve, TakesEveryChineseNameForItsOwnObjectOrForAmbiguous) {
         if (entry.name_zh.empty() || parse_object_address(entry.name_zh)) continue;
         const auto target = resolve(&profile, entry.name_zh);
         if (!target) {
-          EXPECT_NE(target.error().message.find("is ambiguous"), std::string::npos)
-              << profile.family << " " << entry.name_zh << ": " << target.error().message;
+          EXPECT_NE(target.error().message.text().find("is ambiguous"), std::string::npos)
+              << profile.family << " " << entry.name_zh << ": " << target.error().message.text();
           continue;
         }
         own += target->address == entry.address;
@@ -168,7 +169,7 @@ TEST(Resolve, NeverTakesANameWithChineseForAnEnglishOne) {
 
 TEST(Resolve, TakesNamesForChineseReadersThatHaveNoChinese) {
   const auto dm = load_profile("dm", kFolders).value();
-  ASSERT_TRUE(resolve(&dm, "KT")) << resolve(&dm, "KT").error().message;
+  ASSERT_TRUE(resolve(&dm, "KT")) << resolve(&dm, "KT").error().message.text();
   EXPECT_EQ(dm.dictionary.find(resolve(&dm, "KT")->address)->name_zh, "KT");
 }
 
@@ -176,10 +177,11 @@ TEST(Resolve, OffersTheNearestChineseNames) {
   const auto gsd600 = load_profile("gsd600", kFolders).value();
   const auto near = resolve(&gsd600, "速度环增益");
   ASSERT_FALSE(near);
-  EXPECT_EQ(near.error().hint.find("did you mean 速度环增益 1"), 0U) << near.error().hint;
+  EXPECT_EQ(near.error().hint.text().find("did you mean 速度环增益 1"), 0U) << near.error().hint.text();
   const auto parameter = resolve_parameter(gsd600, "速度环增益");
   ASSERT_FALSE(parameter);
-  EXPECT_EQ(parameter.error().hint.find("did you mean 速度环增益 1"), 0U) << parameter.error().hint;
+  EXPECT_EQ(parameter.error().hint.text().find("did you mean 速度环增益 1"), 0U)
+      << parameter.error().hint.text();
 }
 
 }  // namespace

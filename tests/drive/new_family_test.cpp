@@ -43,13 +43,14 @@ class NewFamilies : public testing::Test {
 
 TEST_F(NewFamilies, WhatIsWrittenPassesTheCheckAndIsRecognised) {
   const auto place = write_family(family, root / "drives", folders);
-  ASSERT_TRUE(place) << place.error().message;
+  ASSERT_TRUE(place) << place.error().message.text();
   const auto families = find_families(folders);
   const auto* found = find_family(families, "p10");
   ASSERT_NE(found, nullptr);
-  for (const auto& mistake : mistakes_of(*found, folders)) EXPECT_FALSE(mistake.breaks) << mistake.message;
+  for (const auto& mistake : mistakes_of(*found, folders))
+    EXPECT_FALSE(mistake.breaks) << mistake.message.text();
   const auto profile = load_profile(*found, folders);
-  ASSERT_TRUE(profile) << profile.error().message;
+  ASSERT_TRUE(profile) << profile.error().message.text();
   EXPECT_EQ(profile->rules.vendor, "Maker \"A\"");
   EXPECT_FALSE(profile->rules.identity_certain) << "a person decides that";
   EXPECT_NE(std::find(family.open.begin(), family.open.end(), "[identity] certain"), family.open.end());
@@ -71,7 +72,7 @@ TEST_F(NewFamilies, TheRulesNameWhatTheDictionaryHasAndShowWhatHides) {
 TEST_F(NewFamilies, UnitsOfCia402StayOpen) {
   ASSERT_TRUE(write_family(family, root / "drives", folders));
   const auto made = load_profile("p10", folders);
-  ASSERT_TRUE(made) << made.error().message;
+  ASSERT_TRUE(made) << made.error().message.text();
   EXPECT_TRUE(leaves_units_open(*made));
   for (const auto* parent : {"p10", "p11"}) {
     // A family upon it, and one upon that.
@@ -80,7 +81,7 @@ TEST_F(NewFamilies, UnitsOfCia402StayOpen) {
         write_file_atomically(root / "drives" / (name + ".toml"),
                               formatted("format = 1\nfamily = \"{}\"\nparent = \"{}\"\n", name, parent)));
     const auto child = load_profile(name, folders);
-    ASSERT_TRUE(child) << child.error().message;
+    ASSERT_TRUE(child) << child.error().message.text();
     EXPECT_TRUE(leaves_units_open(*child)) << name;
     EXPECT_TRUE(child->descends_from("p10") && child->descends_from("cia402")) << name;
     EXPECT_FALSE(child->descends_from("gsd600")) << name;
@@ -105,8 +106,8 @@ TEST_F(NewFamilies, AnErrorLeavesNothingBehind) {
   const auto written = write_family(family, root / "drives", folders);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().code, Errc::file);
-  EXPECT_NE(written.error().message.find("column 'name' is missing"), std::string::npos)
-      << written.error().message;
+  EXPECT_NE(written.error().message.text().find("column 'name' is missing"), std::string::npos)
+      << written.error().message.text();
   EXPECT_EQ(things(), 1U) << "the folder for families alone";
 }
 
@@ -114,7 +115,7 @@ TEST_F(NewFamilies, ItsFolderHasTheModeOfNewFolders) {
   const auto before = ::umask(S_IWGRP | S_IRWXO);
   const auto place = write_family(family, root / "drives", folders);
   ::umask(before);
-  ASSERT_TRUE(place) << place.error().message;
+  ASSERT_TRUE(place) << place.error().message.text();
   EXPECT_EQ(fs::status(*place).permissions(), fs::perms(0750));
   EXPECT_EQ(std::distance(fs::directory_iterator(root), {}), 1) << "no draft is left";
 }
@@ -127,7 +128,7 @@ TEST_F(NewFamilies, ATrialWithoutAFolderForItsDraftIsAnError) {
   ::setenv("TMPDIR", kept.c_str(), 1);
   ASSERT_FALSE(tried);
   EXPECT_EQ(tried.error().code, Errc::file);
-  EXPECT_NE(tried.error().message.find("$TMPDIR"), std::string::npos) << tried.error().message;
+  EXPECT_NE(tried.error().message.text().find("$TMPDIR"), std::string::npos);
 }
 
 TEST_F(NewFamilies, ATrialFailsAsTheWritingWould) {
@@ -139,7 +140,7 @@ TEST_F(NewFamilies, ATrialFailsAsTheWritingWould) {
               written ? std::string() : written.error().message);
   };
   const auto tried = try_family(family, root / "drives", folders);
-  ASSERT_TRUE(tried) << tried.error().message;
+  ASSERT_TRUE(tried) << tried.error().message.text();
   EXPECT_EQ(things(), 0U);
   ASSERT_TRUE(write_family(family, root / "drives", folders));
   refused(root / "drives");

@@ -29,12 +29,12 @@ Meaning rpm() {
 }
 
 std::uint64_t unsigned_of(const Result<od::Value>& value) {
-  EXPECT_TRUE(value) << (value ? "" : value.error().message);
+  EXPECT_TRUE(value) << (value ? "" : value.error().message.text());
   return value ? std::get<std::uint64_t>(*value) : 0;
 }
 
 std::int64_t signed_of(const Result<od::Value>& value) {
-  EXPECT_TRUE(value) << (value ? "" : value.error().message);
+  EXPECT_TRUE(value) << (value ? "" : value.error().message.text());
   return value ? std::get<std::int64_t>(*value) : 0;
 }
 
@@ -43,8 +43,8 @@ void expect_refused(const Meaning& meaning, std::string_view text, std::string_v
   const auto value = parse_quantity(meaning, text);
   ASSERT_FALSE(value) << text;
   EXPECT_EQ(value.error().code, Errc::usage);
-  EXPECT_EQ(value.error().message, message);
-  EXPECT_EQ(value.error().hint, hint);
+  EXPECT_EQ(value.error().message.text(), message);
+  EXPECT_EQ(value.error().hint.text(), hint);
 }
 
 TEST(Quantity, OfAPlainNumberIsTheRawNumberOfThePanel) {

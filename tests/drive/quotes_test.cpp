@@ -74,7 +74,7 @@ class Quotes : public testing::TestWithParam<Manual> {
  protected:
   void SetUp() override {
     auto loaded = load_profile(GetParam().family, kFolders);
-    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_TRUE(loaded) << loaded.error().message.text();
     profile = std::move(*loaded);
     read_quotes();
     const auto toml = read_file(kFolders[0] / GetParam().vendor / fmt::format("{}.toml", GetParam().family));

@@ -36,7 +36,7 @@ reset_enabled_by = { object = "0x2000:21", value = 1 }
 0x08000024 = "数值不存在"
 )",
                                  "x1.toml");
-  ASSERT_TRUE(rules) << rules.error().message;
+  ASSERT_TRUE(rules) << rules.error().message.text();
   EXPECT_EQ(rules->family, "x1");
   ASSERT_EQ(rules->identity.size(), 2U);
   EXPECT_EQ(rules->identity[1].object, (ObjectAddress{0x1018, 1}));
@@ -65,7 +65,7 @@ inputs = 0x1C00
 sdo_info = true
 )",
                                  "x1.toml");
-  ASSERT_TRUE(rules) << rules.error().message;
+  ASSERT_TRUE(rules) << rules.error().message.text();
   EXPECT_TRUE(rules->coe.exists());
   EXPECT_EQ(rules->coe.mailbox_in.start, 0x1400);
   EXPECT_EQ(rules->coe.mailbox_in.size, 128);
@@ -83,7 +83,7 @@ TEST(Rules, RegistersOfModbusAreBlocksOfObjects) {
       head +
           "registers = [{ index = 0x2000, count = 0x300, at = 0 }, { index = 0x3000, count = 0x30, at = 0x1000 }]",
       "x1.toml");
-  ASSERT_TRUE(rules) << rules.error().message;
+  ASSERT_TRUE(rules) << rules.error().message.text();
   const auto& modbus = rules->modbus;
   EXPECT_EQ(modbus.register_of({0x2000, 0}), 0);
   EXPECT_EQ(modbus.register_of({0x22FF, 0}), 0x02FF);
@@ -105,7 +105,7 @@ TEST(Rules, RegistersOfModbusAreBlocksOfObjects) {
 TEST(Rules, NameWhatEnergisesAMotorWithoutTheControlwordAndWhatEndsIt) {
   const std::string head = "format = 1\nfamily = \"x1\"\n[motion]\nwithout_controlword = ";
   const auto rules = parse_rules(head + R"([{ name = "P1", end = "P2", value = 1 }])", "x1.toml");
-  ASSERT_TRUE(rules) << rules.error().message;
+  ASSERT_TRUE(rules) << rules.error().message.text();
   ASSERT_EQ(rules->motion.without_controlword.size(), 1U);
   EXPECT_EQ(rules->motion.without_controlword.front().name, "P1");
   EXPECT_EQ(rules->motion.without_controlword.front().end, "P2");
@@ -119,7 +119,7 @@ TEST(Rules, NameOnlyParametersThatThereAreAsEnergisingAMotor) {
   const std::vector<std::filesystem::path> folders{std::filesystem::path(source_dir()) / "eds"};
   for (const auto* family : {"ts", "gsd600"}) {
     const auto profile = load_profile(family, folders);
-    ASSERT_TRUE(profile) << profile.error().message;
+    ASSERT_TRUE(profile) << profile.error().message.text();
     EXPECT_GE(profile->rules.motion.without_controlword.size(), 2U);
     for (const auto& parameter : profile->rules.motion.without_controlword) {
       const auto place = place_of(*profile, parameter.name);
@@ -149,7 +149,7 @@ rated_torque = { multiply = [2] }
 0x080000A1 = { text = "Object error", text_zh = "对象错误" }
 )",
                                  "x1.toml");
-  ASSERT_TRUE(rules) << rules.error().message;
+  ASSERT_TRUE(rules) << rules.error().message.text();
   const auto& ways = rules->units.at(Measure::increments_per_turn);
   ASSERT_EQ(ways.size(), 2U);
   EXPECT_EQ(ways[1].objects(), (std::vector<ObjectAddress>{{0x2000, 2}, {0x2000, 0}}));
@@ -168,7 +168,7 @@ void expect_refused(const char* text, const char* message) {
   const auto rules = parse_rules(text, "x.toml");
   ASSERT_FALSE(rules) << text;
   EXPECT_EQ(rules.error().code, Errc::file);
-  EXPECT_EQ(rules.error().message, message);
+  EXPECT_EQ(rules.error().message.text(), message);
 }
 
 TEST(Rules, WithAMisspeltKeyAreRefusedBecauseTheRuleWouldSilentlyNotHold) {
@@ -199,7 +199,7 @@ TEST(Rules, NameTheirFormatAndFamily) {
   for (const auto* text : {"", "family = \"x1\"", "format = 1", "format = 1\nfamily = \"\""}) {
     const auto rules = parse_rules(text, "x1.toml");
     ASSERT_FALSE(rules) << text;
-    EXPECT_EQ(rules.error().message, "x1.toml: 'format' or 'family' is missing");
+    EXPECT_EQ(rules.error().message.text(), "x1.toml: 'format' or 'family' is missing");
   }
 }
 

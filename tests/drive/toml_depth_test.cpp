@@ -32,7 +32,7 @@ TEST(TomlDepth, WhatStandsInStringsNestsNothing) {
 TEST(TomlDepth, IsRefusedWithItsLine) {
   const auto deep = check_toml_depth("a = 1\nb = [ # {{{\n" + repeated(65, "["), "a.toml");
   ASSERT_FALSE(deep);
-  EXPECT_EQ(deep.error().message, "a.toml:3: tables are nested deeper than 64 levels");
+  EXPECT_EQ(deep.error().message.text(), "a.toml:3: tables are nested deeper than 64 levels");
   EXPECT_FALSE(is_flat(repeated(66, "a.") + "b = 1"));
   EXPECT_FALSE(is_flat(repeated(66, "\"a\" . 'b'.") + "c = 1"));
 }

@@ -46,10 +46,10 @@ class TopicData : public testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     auto loaded = load_profile(GetParam(), kFolders);
-    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_TRUE(loaded) << loaded.error().message.text();
     profile = std::move(*loaded);
     auto read = load_own_topics(profile);
-    ASSERT_TRUE(read) << read.error().message;
+    ASSERT_TRUE(read) << read.error().message.text();
     topics = std::move(*read);
     EXPECT_TRUE(load_topics(profile, kFolders));
   }

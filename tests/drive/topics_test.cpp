@@ -17,7 +17,7 @@ const std::string kTexts = "text = \"Green.\"\ntext_zh = \"绿色。\"\n";
 
 std::string refusal(const std::string& toml) {
   const auto topics = parse_topics(toml, "f.topics.toml", "f");
-  return topics ? "none" : topics.error().message;
+  return topics ? "none" : topics.error().message.text();
 }
 
 TEST(Topics, AreReadWithAllTheirKeys) {
@@ -28,7 +28,7 @@ TEST(Topics, AreReadWithAllTheirKeys) {
           "{ cells = [\"off\"], line = \"15\" }]\npicture = '''\n __\n'''\nnote = \"N\"\nnote_zh = \"注\"\n"
           "assumed = true\nfigure = true\nobject = \"0x6060:00\"\nvalue = -1\n",
       "f.topics.toml", "f");
-  ASSERT_TRUE(topics) << topics.error().message;
+  ASSERT_TRUE(topics) << topics.error().message.text();
   const auto& topic = topics->front();
   EXPECT_EQ(topic.family, "f");
   EXPECT_EQ(topic.also, std::vector<std::string>{"run light"});
@@ -89,9 +89,9 @@ TEST(Topics, SayWhereTheyStandByLinesOrByAClause) {
 
 TEST(Topics, OfAFamilyStandBeforeThoseOfItsParentsAndTakeTheirPlace) {
   const auto profile = load_profile("x1", kTopicFolders);
-  ASSERT_TRUE(profile) << profile.error().message;
+  ASSERT_TRUE(profile) << profile.error().message.text();
   const auto topics = load_topics(*profile, kTopicFolders);
-  ASSERT_TRUE(topics) << topics.error().message;
+  ASSERT_TRUE(topics) << topics.error().message.text();
   std::vector<std::string> names;
   for (const auto& topic : *topics) names.push_back(topic.family + " " + topic.name);
   // Method 7 is told by the family in its own words, without a picture.
@@ -104,7 +104,7 @@ TEST(Topics, OfTheStandardHoldForAFamilyWithoutAParentAndForFiles) {
   for (const auto* drive : {"x2", "tests/cli/data/node.eds"}) {
     std::filesystem::current_path(source_dir());
     const auto profile = load_profile(drive, kTopicFolders);
-    ASSERT_TRUE(profile) << profile.error().message;
+    ASSERT_TRUE(profile) << profile.error().message.text();
     const auto topics = load_topics(*profile, kTopicFolders);
     ASSERT_TRUE(topics);
     EXPECT_TRUE(std::any_of(topics->begin(), topics->end(), [](const Topic& t) { return t.name == "pp"; }))
@@ -115,7 +115,7 @@ TEST(Topics, OfTheStandardHoldForAFamilyWithoutAParentAndForFiles) {
 std::vector<std::string> heads(const std::string& toml) {
   std::vector<std::string> out;
   const auto topics = parse_topic_heads(toml, "f.topics.toml", "f");
-  if (!topics) return {topics.error().message};
+  if (!topics) return {topics.error().message.text()};
   for (const auto& topic : *topics)
     out.push_back(topic.kind + " " + topic.name + (topic.picture.empty() ? "" : " with a picture"));
   return out;
@@ -125,7 +125,7 @@ TEST(TopicNames, AreThoseOfTheTopicsInEveryFamily) {
   const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
   for (const auto* family : {"cia402", "gsd600", "dm", "da200", "sv2", "ts"}) {
     const auto profile = load_profile(family, folders);
-    ASSERT_TRUE(profile) << profile.error().message;
+    ASSERT_TRUE(profile) << profile.error().message.text();
     std::vector<std::string> whole;
     const auto topics = load_topics(*profile, folders);
     for (const auto& topic : *topics) whole.push_back(topic.name);
@@ -155,11 +155,12 @@ TEST(Topics, AreNoFamilyAndAreReadByNobodyElse) {
   for (const auto& family : find_families(kTopicFolders)) found.push_back(family.name);
   EXPECT_EQ(found, (std::vector<std::string>{"cia402", "x1", "x2"}));
   const auto broken = load_profile(source_dir() + "/tests/cli/data/broken/bad.toml", kTopicFolders);
-  ASSERT_TRUE(broken) << broken.error().message;
+  ASSERT_TRUE(broken) << broken.error().message.text();
   const auto topics = load_topics(*broken, kTopicFolders);
   ASSERT_FALSE(topics);
   EXPECT_EQ(topics.error().code, Errc::file);
-  EXPECT_TRUE(topics.error().message.ends_with("bad.topics.toml:11:3: a row of 1 'cells' under 2 'columns'"));
+  EXPECT_TRUE(
+      topics.error().message.text().ends_with("bad.topics.toml:11:3: a row of 1 'cells' under 2 'columns'"));
 }
 
 }  // namespace

@@ -124,9 +124,9 @@ TEST_F(AlRequestTest, ARefusalIsToldInWordsWithWhatToDo) {
   const auto status = ask(AlState::safeop);
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, Errc::negative);
-  EXPECT_EQ(status.error().message,
+  EXPECT_EQ(status.error().message.text(),
             "node 2: SAFE-OP refused, state is PRE-OP: invalid output settings (AL status code 001Dh)");
-  EXPECT_NE(status.error().hint.find("`pdo show`"), std::string::npos);
+  EXPECT_NE(status.error().hint.text().find("`pdo show`"), std::string::npos);
   EXPECT_EQ(status.error().node, 2);
 }
 
@@ -135,7 +135,7 @@ TEST_F(AlRequestTest, AnErrorThatStaysAfterItsAcknowledgeIsARefusal) {
   slave.keeps_error = true;
   const auto status = ask(AlState::preop);
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().message,
+  EXPECT_EQ(status.error().message.text(),
             "node 2: PRE-OP refused, state is INIT: no valid firmware (AL status code 0014h)");
   EXPECT_GE(now, TimePoint{1s} + 500ms);
   EXPECT_EQ(slave.written, Written{0x11});
@@ -147,7 +147,7 @@ TEST_F(AlRequestTest, ASlaveThatStaysWhereItIsEndsTheWait) {
   const auto status = ask(AlState::op, 300ms);
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, Errc::timeout);
-  EXPECT_EQ(status.error().message, "node 2: OP was requested, state is still SAFE-OP");
+  EXPECT_EQ(status.error().message.text(), "node 2: OP was requested, state is still SAFE-OP");
   EXPECT_GE(now, TimePoint{1s} + 300ms);
   EXPECT_LT(now, TimePoint{1s} + 310ms);
 }
@@ -158,7 +158,7 @@ TEST_F(AlRequestTest, LostFramesAreAskedAgain) {
   slave.lost = 1'000'000;
   const auto status = ask(AlState::op);
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().message, "node 2: frames do not come back");
+  EXPECT_EQ(status.error().message.text(), "node 2: frames do not come back");
   EXPECT_EQ(status.error().code, Errc::timeout);
 }
 
@@ -166,7 +166,7 @@ TEST_F(AlRequestTest, ASlaveThatIsGoneIsTold) {
   slave.gone = true;
   const auto status = ask(AlState::op);
   ASSERT_FALSE(status);
-  EXPECT_EQ(status.error().message, "node 2: it does not answer");
+  EXPECT_EQ(status.error().message.text(), "node 2: it does not answer");
 }
 
 TEST_F(AlRequestTest, ALookChangesNothing) {

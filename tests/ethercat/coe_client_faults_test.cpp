@@ -22,9 +22,9 @@ TEST_F(CoeClientTest, AnAbortThatOnlyEtherCatHasIsToldInWords) {
   const auto r = result();
   ASSERT_FALSE(r);
   EXPECT_EQ(
-      r.error().message,
+      r.error().message.text(),
       "node 2, object 0x6040:0: refused: object is mapped to an RxPDO, download blocked (abort 0x06010006)");
-  EXPECT_NE(r.error().hint, "");
+  EXPECT_NE(r.error().hint.text(), "");
 }
 
 TEST_F(CoeClientTest, HintsSpeakOfStatesOfEtherCat) {

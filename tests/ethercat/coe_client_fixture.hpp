@@ -27,13 +27,13 @@ class CoeClientTest : public testing::Test {
   }
   std::string data() {
     const auto r = result();
-    return r ? to_hex(*r) : r.error().message;
+    return r ? to_hex(*r) : r.error().message.text();
   }
   void expect_failure(Errc code, std::string_view message, std::optional<std::uint32_t> abort = {}) {
     const auto r = result();
     ASSERT_FALSE(r);
     EXPECT_EQ(r.error().code, code);
-    EXPECT_EQ(r.error().message, message);
+    EXPECT_EQ(r.error().message.text(), message);
     EXPECT_EQ(r.error().abort_code, abort);
     EXPECT_EQ(r.error().node, 2);
     EXPECT_TRUE(r.error().object);

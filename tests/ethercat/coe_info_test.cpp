@@ -19,14 +19,14 @@ class CoeInfoTest : public testing::Test {
   template <class T>
   T got() {
     const auto r = result();
-    EXPECT_TRUE(r) << (r ? "" : r.error().message);
+    EXPECT_TRUE(r) << (r ? "" : r.error().message.text());
     return r ? std::get<T>(*r) : T{};
   }
   void expect_failure(Errc code, std::string_view message) {
     const auto r = result();
     ASSERT_FALSE(r);
     EXPECT_EQ(r.error().code, code);
-    EXPECT_EQ(r.error().message, message);
+    EXPECT_EQ(r.error().message.text(), message);
     EXPECT_EQ(r.error().node, 2);
   }
   void list(std::initializer_list<std::string_view> lines) {

@@ -85,7 +85,7 @@ RC_GTEST_PROP(CoeSlave, LostFramesLoseNoTruth, ()) {
     RC_ASSERT(times <= 1U);
     if (written) RC_ASSERT(times == 1U);
     if (times == 1U) RC_ASSERT(wire.server.written.back() == data);
-    RC_LOG() << (written ? "written" : written.error().message) << '\n';
+    RC_LOG() << (written ? "written" : written.error().message.text()) << '\n';
     RC_ASSERT(
         (written || written.error().code == Errc::timeout || written.error().abort_code == 0x0800'0022U));
     wire.server.refuses = 0;

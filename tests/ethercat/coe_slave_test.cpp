@@ -32,7 +32,7 @@ TEST(CoeSlave, ARequestThatNobodyWaitsForIsNotDoneLater) {
   EXPECT_FALSE(wire.write({1}));
   const auto second = wire.write({2});
   ASSERT_FALSE(second);
-  EXPECT_EQ(second.error().message, "node 7, object 0x2000:1: its mailbox stays full");
+  EXPECT_EQ(second.error().message.text(), "node 7, object 0x2000:1: its mailbox stays full");
   wire.box.stuck = false;
   wire.settle();
   EXPECT_EQ(wire.server.written, (std::vector<Bytes>{{1}})) << "the first was in the mailbox already";
@@ -95,7 +95,7 @@ TEST(CoeSlave, AnAbandonedTransferIsAbortedAtTheSlave) {
   wire.box.latency = 600ms;
   const auto result = wire.finish();
   ASSERT_FALSE(result);
-  EXPECT_EQ(result.error().message, "node 7, object 0x2000:1: no answer within 500 ms");
+  EXPECT_EQ(result.error().message.text(), "node 7, object 0x2000:1: no answer within 500 ms");
   wire.box.latency = 0us;
   for (int i = 0; i < 5000 && wire.server.aborted == 0; ++i) wire.step();
   EXPECT_EQ(wire.server.aborted, 1);
@@ -124,7 +124,7 @@ TEST(CoeSlave, ASlaveThatIsGoneEndsATransferWithThatReason) {
   const auto result = wire.read();
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, Errc::timeout);
-  EXPECT_EQ(result.error().message, "node 7, object 0x2000:1: it does not answer at all");
+  EXPECT_EQ(result.error().message.text(), "node 7, object 0x2000:1: it does not answer at all");
 }
 
 }  // namespace

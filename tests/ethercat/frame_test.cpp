@@ -14,7 +14,7 @@ constexpr MacAddress kSource{0x10, 0x10, 0x10, 0x10, 0x10, 0x10};
 std::vector<Datagram> datagrams(ByteSpan frame) {
   std::vector<Datagram> out;
   auto reader = FrameReader::open(frame);
-  EXPECT_TRUE(reader) << (reader ? "" : reader.error().message);
+  EXPECT_TRUE(reader) << (reader ? "" : reader.error().message.text());
   if (!reader) return out;
   while (const auto datagram = reader->next()) out.push_back(*datagram);
   return out;
@@ -22,7 +22,7 @@ std::vector<Datagram> datagrams(ByteSpan frame) {
 
 std::string refusal(ByteSpan frame) {
   const auto reader = FrameReader::open(frame);
-  return reader ? "accepted" : reader.error().message;
+  return reader ? "accepted" : reader.error().message.text();
 }
 
 TEST(Frame, OneDatagramIsWrittenAsAPublicMasterWritesIt) {

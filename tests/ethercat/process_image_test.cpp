@@ -43,7 +43,7 @@ TEST_F(ProcessImageTest, NothingFlowsUntilEveryOutputWasSet) {
   const auto started = image.start(now);
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().code, Errc::refused);
-  EXPECT_EQ(started.error().message,
+  EXPECT_EQ(started.error().message.text(),
             "node 1, object 0x607A:0: this output was never set, and the drive would obey a zero");
   EXPECT_EQ(image.unset(1), (std::vector<ObjectAddress>{kTarget, kFlag, kMode}));
   EXPECT_EQ(image.deadline(), kNever);
@@ -57,8 +57,8 @@ TEST_F(ProcessImageTest, NothingFlowsUntilEveryOutputWasSet) {
 TEST_F(ProcessImageTest, AValueOfAnotherLengthOrObjectIsRefused) {
   const auto longer = image.set(1, kControl, hex("060000"));
   ASSERT_FALSE(longer);
-  EXPECT_EQ(longer.error().message, "node 1, object 0x6040:0: 3 bytes for an output of 16 bits");
-  EXPECT_EQ(image.set(1, kStatus, hex("0600")).error().message,
+  EXPECT_EQ(longer.error().message.text(), "node 1, object 0x6040:0: 3 bytes for an output of 16 bits");
+  EXPECT_EQ(image.set(1, kStatus, hex("0600")).error().message.text(),
             "node 1, object 0x6041:0: it is not among the outputs of the process image");
   EXPECT_FALSE(image.set(9, kControl, hex("0600")));
   EXPECT_FALSE(image.output(1, kControl));

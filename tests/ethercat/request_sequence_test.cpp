@@ -45,7 +45,7 @@ TEST(RequestSequence, TheFirstThatIsNotDoneEndsItAndIsNamed) {
   EXPECT_EQ(ends({{}, 0, false, kNow}).message,
             "node 3: register 0810h cannot be written: it does not answer");
   const auto lost = ends({{}, 0, true, kNow});
-  EXPECT_EQ(lost.message, "node 3: register 0810h cannot be written: frames do not come back");
+  EXPECT_EQ(lost.message.text(), "node 3: register 0810h cannot be written: frames do not come back");
   EXPECT_EQ(lost.code, Errc::timeout);
   EXPECT_EQ(lost.node, 3);
 }

@@ -125,13 +125,13 @@ TEST_F(RingLookTest, NothingOnTheWireAndNoWireAtAllAreTwoThings) {
   const auto empty = run();
   ASSERT_FALSE(empty);
   EXPECT_EQ(empty.error().code, Errc::bus);
-  EXPECT_EQ(empty.error().message, "no EtherCAT slave is there");
+  EXPECT_EQ(empty.error().message.text(), "no EtherCAT slave is there");
   lost = true;
   const auto none = run();
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().code, Errc::bus);
-  EXPECT_EQ(none.error().message, "frames do not come back");
-  EXPECT_NE(none.error().hint, "");
+  EXPECT_EQ(none.error().message.text(), "frames do not come back");
+  EXPECT_NE(none.error().hint.text(), "");
 }
 
 TEST_F(RingLookTest, ASlaveThatGoesMeanwhileIsNamed) {
@@ -139,7 +139,7 @@ TEST_F(RingLookTest, ASlaveThatGoesMeanwhileIsNamed) {
   gone = 1;
   const auto view = run();
   ASSERT_FALSE(view);
-  EXPECT_EQ(view.error().message, "the slave at position 2 no longer answers");
+  EXPECT_EQ(view.error().message.text(), "the slave at position 2 no longer answers");
   EXPECT_EQ(view.error().node, 2);
 }
 
@@ -147,7 +147,7 @@ TEST_F(RingLookTest, ACountThatComesBackShortHidesNoSlave) {
   slaves = {registers(0x1001, 2), registers(0x1002, 2), registers(0x1003, 8)};
   uncounted = 1;
   const auto view = run();
-  ASSERT_TRUE(view) << view.error().message;
+  ASSERT_TRUE(view) << view.error().message.text();
   EXPECT_EQ(view->count, 3U);
   ASSERT_EQ(view->slaves.size(), 3U);
   EXPECT_TRUE(view->is_in_use());

@@ -94,8 +94,8 @@ class SiiReaderTest : public testing::Test {
     const auto result = read();
     ASSERT_FALSE(result);
     EXPECT_EQ(result.error().code, code);
-    EXPECT_EQ(result.error().message, message);
-    EXPECT_NE(result.error().hint, "");
+    EXPECT_EQ(result.error().message.text(), message);
+    EXPECT_NE(result.error().hint.text(), "");
     EXPECT_EQ(result.error().node, 3);
   }
 

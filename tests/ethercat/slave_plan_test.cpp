@@ -33,7 +33,7 @@ TEST(SlavePlan, ProcessDataAreSetUpAsForARealDrive) {
   mapping.inputs = mapping.outputs;
   const ProcessArea area{2, 0x1100, 0x24, 3, 0x1140, 0x20};
   const auto plan = plan_slave(1, area, mapping, 0);
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   const auto requests = plan->requests(kStation, false);
   ASSERT_EQ(requests.size(), 4U);
   EXPECT_EQ(requests[0].address, physical_address(0x1001, 0x0810));
@@ -83,17 +83,17 @@ TEST(SlavePlan, AMappingThatLeadsIntoTheOtherBufferIsRefused) {
   for (int i = 0; i < 6; ++i) mapping.outputs.push_back({{0x6040, 0}, 32});
   const auto plan = plan_slave(3, {2, 0x1100, 0x24, 3, 0x1140, 0x20}, mapping, 0);
   ASSERT_FALSE(plan);
-  EXPECT_EQ(plan.error().message,
+  EXPECT_EQ(plan.error().message.text(),
             "node 3: its outputs need 72 bytes of its memory (three buffers), and 64 are available");
   EXPECT_EQ(plan.error().code, Errc::usage);
   const auto other = plan_slave(3, {2, 0x1140, 0x24, 3, 0x1100, 0x20}, {{}, mapping.outputs}, 0);
   ASSERT_FALSE(other);
-  EXPECT_EQ(other.error().message,
+  EXPECT_EQ(other.error().message.text(),
             "node 3: its inputs need 72 bytes of its memory (three buffers), and 64 are available");
   const auto unknown = plan_slave(3, {}, mapping, 0);
-  EXPECT_EQ(unknown.error().message, "node 3: the location of its process data is unknown");
+  EXPECT_EQ(unknown.error().message.text(), "node 3: the location of its process data is unknown");
   mapping.outputs.assign(400, {{0x6040, 0}, 32});
-  EXPECT_EQ(plan_slave(3, {2, 0x1000, 0x24, 3, 0x8000, 0x20}, mapping, 0).error().message,
+  EXPECT_EQ(plan_slave(3, {2, 0x1000, 0x24, 3, 0x8000, 0x20}, mapping, 0).error().message.text(),
             "node 3: its process data have 1600 bytes, a frame holds 1486");
 }
 
@@ -125,7 +125,7 @@ TEST(SmWatchdog, HasTheTimeThatItWasAskedFor) {
 }
 
 TEST(SmWatchdog, OneThatWouldBeNoneOrTooLongIsRefused) {
-  EXPECT_EQ(sm_watchdog(0us).error().message, "a watchdog of 0 ms cannot be set");
+  EXPECT_EQ(sm_watchdog(0us).error().message.text(), "a watchdog of 0 ms cannot be set");
   EXPECT_FALSE(sm_watchdog(7s));
   EXPECT_FALSE(sm_watchdog(-1s));
 }

@@ -52,7 +52,7 @@ class LocalPortTest : public testing::Test {
   }
   static std::unique_ptr<Port> join() {
     auto port = open_local_port("demo", End::master, seconds(20));
-    EXPECT_TRUE(port) << port.error().message;
+    EXPECT_TRUE(port) << port.error().message.text();
     return port ? std::move(*port) : nullptr;
   }
   static Error refused(End end = End::master, Duration patience = seconds(20)) {
@@ -94,8 +94,8 @@ TEST_F(LocalPortTest, AFrameThatIsTooLongIsABug) {
 TEST_F(LocalPortTest, ARingThatNobodyServesIsToldWithWhatServesIt) {
   const auto error = refused();
   EXPECT_EQ(error.code, Errc::bus);
-  EXPECT_EQ(error.message, "nobody serves coe:local:demo");
-  EXPECT_EQ(error.hint, "start `servoctl sim sv2@1 --bus coe:local:demo`");
+  EXPECT_EQ(error.message.text(), "nobody serves coe:local:demo");
+  EXPECT_EQ(error.hint.text(), "start `servoctl sim sv2@1 --bus coe:local:demo`");
 }
 
 TEST_F(LocalPortTest, ASecondMasterIsRefusedAndTheFirstIsNamed) {
@@ -108,19 +108,20 @@ TEST_F(LocalPortTest, ASecondMasterIsRefusedAndTheFirstIsNamed) {
   ASSERT_TRUE(first.is_ready());
   const auto error = refused();
   EXPECT_EQ(error.code, Errc::bus);
-  EXPECT_NE(error.message.find("coe:local:demo is in use by process " + std::to_string(first.id()) + " ("),
-            std::string::npos)
-      << error.message;
+  EXPECT_NE(
+      error.message.text().find("coe:local:demo is in use by process " + std::to_string(first.id()) + " ("),
+      std::string::npos)
+      << error.message.text();
 }
 
 TEST_F(LocalPortTest, ASecondRingIsRefusedAndTheFirstIsNamed) {
   const Child ring(serving());
   const auto error = refused(End::ring);
   EXPECT_EQ(error.code, Errc::bus);
-  EXPECT_NE(
-      error.message.find("coe:local:demo is served already, by process " + std::to_string(ring.id()) + " ("),
-      std::string::npos)
-      << error.message;
+  EXPECT_NE(error.message.text().find("coe:local:demo is served already, by process " +
+                                      std::to_string(ring.id()) + " ("),
+            std::string::npos)
+      << error.message.text();
 }
 
 TEST_F(LocalPortTest, AMasterThatWasKilledHindersNobody) {
@@ -153,8 +154,8 @@ TEST_F(LocalPortTest, ARingThatWasKilledIsToldAndItsSuccessorTakenUp) {
   const auto lost = master->receive(master->now() + seconds(20));
   ASSERT_FALSE(lost);
   EXPECT_EQ(lost.error().code, Errc::bus);
-  EXPECT_EQ(lost.error().message, "coe:local:demo is gone: process " + id + " served it");
-  EXPECT_EQ(master->recover(master->now()).error().message, "nobody serves coe:local:demo");
+  EXPECT_EQ(lost.error().message.text(), "coe:local:demo is gone: process " + id + " served it");
+  EXPECT_EQ(master->recover(master->now()).error().message.text(), "nobody serves coe:local:demo");
   ring = std::make_unique<Child>(serving());
   ASSERT_TRUE(ring->is_ready());
   ASSERT_TRUE(master->recover(master->now() + seconds(20)));
@@ -169,8 +170,9 @@ TEST_F(LocalPortTest, ARingThatHangsIsToldAndNotWaitedForWithoutEnd) {
   const auto error = refused(End::master, milliseconds(10));
   EXPECT_EQ(error.code, Errc::bus);
   const auto begin = "coe:local:demo does not answer: process " + std::to_string(ring.id()) + " ";
-  EXPECT_EQ(error.message.substr(0, begin.size()), begin);
-  EXPECT_NE(error.hint.find("kill -CONT " + std::to_string(ring.id())), std::string::npos) << error.hint;
+  EXPECT_EQ(error.message.text().substr(0, begin.size()), begin);
+  EXPECT_NE(error.hint.text().find("kill -CONT " + std::to_string(ring.id())), std::string::npos)
+      << error.hint.text();
 }
 
 TEST_F(LocalPortTest, ACableThatIsStillThereIsNotOpenedAnew) {
@@ -178,7 +180,7 @@ TEST_F(LocalPortTest, ACableThatIsStillThereIsNotOpenedAnew) {
   const auto master = join();
   const auto began = steady_now();
   const auto back = master->recover(began + seconds(20));
-  ASSERT_TRUE(back) << back.error().message;
+  ASSERT_TRUE(back) << back.error().message.text();
   EXPECT_LT(steady_now() - began, seconds(1));
   ASSERT_TRUE(master->send(frame_of(1, 60)));
   EXPECT_EQ(next(*master).size(), 60U);

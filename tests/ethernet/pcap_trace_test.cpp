@@ -62,8 +62,8 @@ class PcapTest : public testing::Test {
     inner_ = inner.get();
     file_ = folder_ / name;
     auto port = pcap_to(std::move(inner), file_, "eth0", can::TraceClock::bus,
-                        [this](const Error& error) { failures_.push_back(error.message); });
-    ASSERT_TRUE(port) << port.error().message;
+                        [this](const Error& error) { failures_.push_back(error.message.text()); });
+    ASSERT_TRUE(port) << port.error().message.text();
     port_ = std::move(*port);
   }
   std::string written() const {
@@ -155,7 +155,7 @@ TEST_F(PcapTest, FramesThatAReaderDoesNotTakeAreCountedAndTheHeadIsNone) {
   for (int i = 0; i < 2000; ++i) ASSERT_TRUE(port_->send(frame_of(1, 1514)));
   const auto notices = port_->take_notices();
   ASSERT_EQ(notices.size(), 1U);
-  const auto left_out = std::stoi(notices.front());
+  const auto left_out = std::stoi(notices.front().text());
   EXPECT_GT(left_out, 1000);
   port_->end_trace();
   ASSERT_EQ(failures_.size(), 1U);

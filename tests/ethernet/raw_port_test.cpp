@@ -79,11 +79,11 @@ TEST_F(RawPortTest, AnInterfaceThatIsGoneIsTold) {
   const auto sent = port_->send(frame_of(1));
   ASSERT_FALSE(sent);
   EXPECT_EQ(sent.error().code, Errc::bus);
-  EXPECT_EQ(sent.error().message, "nosuch7 went down: the interface is gone");
+  EXPECT_EQ(sent.error().message.text(), "nosuch7 went down: the interface is gone");
   EXPECT_FALSE(port_->has_link());
   const auto back = port_->recover(port_->now() + milliseconds(12));
   ASSERT_FALSE(back);
-  EXPECT_EQ(back.error().message, "there is no interface nosuch7");
+  EXPECT_EQ(back.error().message.text(), "there is no interface nosuch7");
 }
 
 TEST(OpenRawPort, ANameThatNoInterfaceCanHaveIsRefused) {
@@ -98,17 +98,18 @@ TEST(OpenRawPort, AMissingInterfaceIsToldWithThoseThereAre) {
   const auto port = open_raw_port("nosucheth7");
   ASSERT_FALSE(port);
   EXPECT_EQ(port.error().code, Errc::bus);
-  EXPECT_EQ(port.error().message, "there is no interface nosucheth7");
-  EXPECT_NE(port.error().hint.find("`ip link` lists all interfaces"), std::string::npos) << port.error().hint;
+  EXPECT_EQ(port.error().message.text(), "there is no interface nosucheth7");
+  EXPECT_NE(port.error().hint.text().find("`ip link` lists all interfaces"), std::string::npos)
+      << port.error().hint.text();
   for (const auto& name : ethernet_interfaces())
-    EXPECT_NE(port.error().hint.find(name), std::string::npos) << port.error().hint;
+    EXPECT_NE(port.error().hint.text().find(name), std::string::npos) << port.error().hint.text();
 }
 
 TEST(OpenRawPort, LoopbackIsNoWire) {
   const auto port = open_raw_port("lo");
   ASSERT_FALSE(port);
   EXPECT_EQ(port.error().code, Errc::bus);
-  EXPECT_EQ(port.error().message, "lo leads back to this machine: no drive can be on it");
+  EXPECT_EQ(port.error().message.text(), "lo leads back to this machine: no drive can be on it");
 }
 
 TEST(EthernetInterfaces, LeaveOutOtherNetworks) {
@@ -119,9 +120,9 @@ TEST(EthernetInterfaces, LeaveOutOtherNetworks) {
 
 TEST(EthernetInterfaces, WhoMayNotSendIsGivenTheCommandForThisVeryProgram) {
   const auto error = no_right("eth0").value();
-  EXPECT_EQ(error.message, "no right to send Ethernet frames on eth0");
-  EXPECT_NE(error.hint.find("`sudo setcap cap_net_raw+ep /"), std::string::npos) << error.hint;
-  EXPECT_NE(error.hint.find("ethernet_tests`"), std::string::npos) << error.hint;
+  EXPECT_EQ(error.message.text(), "no right to send Ethernet frames on eth0");
+  EXPECT_NE(error.hint.text().find("`sudo setcap cap_net_raw+ep /"), std::string::npos) << error.hint.text();
+  EXPECT_NE(error.hint.text().find("ethernet_tests`"), std::string::npos) << error.hint.text();
 }
 
 TEST(WireLock, OnlyOneProcessHoldsAWireAndItIsNamed) {
@@ -136,11 +137,11 @@ TEST(WireLock, OnlyOneProcessHoldsAWireAndItIsNamed) {
     const auto lock = WireLock::take(key, "eth0");
     ASSERT_FALSE(lock);
     EXPECT_EQ(lock.error().code, Errc::bus);
-    EXPECT_EQ(lock.error().message.find("eth0 is in use by process " + std::to_string(other.id()) +
-                                        " (ethernet_tests"),
+    EXPECT_EQ(lock.error().message.text().find("eth0 is in use by process " + std::to_string(other.id()) +
+                                               " (ethernet_tests"),
               0U)
-        << lock.error().message;
-    EXPECT_NE(lock.error().hint.find("`ps -fp " + std::to_string(other.id()) + "` shows it"),
+        << lock.error().message.text();
+    EXPECT_NE(lock.error().hint.text().find("`ps -fp " + std::to_string(other.id()) + "` shows it"),
               std::string::npos);
   }
   EXPECT_TRUE(WireLock::take(key + "b", "eth1"));

@@ -17,7 +17,7 @@ bool lies_in(ByteSpan part, ByteSpan whole) {
 void read_frame(ByteSpan bytes) {
   auto reader = ethercat::FrameReader::open(bytes);
   if (!reader) {
-    fuzz::require(!reader.error().message.empty(), "a refusal says why");
+    fuzz::require(!reader.error().message.text().empty(), "a refusal says why");
     return;
   }
   std::size_t count = 0;

@@ -36,12 +36,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = pdo::parse_pdo_file(fuzz::text(data + 1, size - 1), name);
   if (!file) {
     fuzz::require(file.error().code == Errc::file, "a file that cannot be read is Errc::file");
-    fuzz::require(file.error().message.starts_with(name), "… and says which file");
+    fuzz::require(file.error().message.text().starts_with(name), "… and says which file");
     return 0;
   }
   const auto wanted = pdo::follow(profile(), present(), file->pdos);
   if (!wanted) {
-    fuzz::require(!wanted.error().message.empty(), "what cannot be followed is refused in words");
+    fuzz::require(!wanted.error().message.text().empty(), "what cannot be followed is refused in words");
     return 0;
   }
   std::set<std::uint16_t> seen;

@@ -57,10 +57,10 @@ TEST(GatewayRequest, KnowsTheCommandsOfTheStandardInAnyCase) {
 }
 
 TEST(GatewayRequest, AnIndexOutOfRangeIsRefused) {
-  EXPECT_EQ(object_of(request_of("r 65536 0")).error().message, "'65536' is not an index");
-  EXPECT_EQ(object_of(request_of("r 0x1000 256")).error().message, "'256' is not a sub-index");
-  EXPECT_EQ(object_of(request_of("r 0x1000")).error().message, "'' is not a sub-index");
-  EXPECT_EQ(object_of(request_of("r -1 0")).error().message, "'-1' is not an index");
+  EXPECT_EQ(object_of(request_of("r 65536 0")).error().message.text(), "'65536' is not an index");
+  EXPECT_EQ(object_of(request_of("r 0x1000 256")).error().message.text(), "'256' is not a sub-index");
+  EXPECT_EQ(object_of(request_of("r 0x1000")).error().message.text(), "'' is not a sub-index");
+  EXPECT_EQ(object_of(request_of("r -1 0")).error().message.text(), "'-1' is not an index");
 }
 
 TEST(GatewayLines, EndWithAnyEndAndAreTheSameHoweverTheyAreCut) {

@@ -2,8 +2,8 @@
 """The texts of the sources and their Chinese.
 
   catalogue.py ROOT                checks: every text for people stands in src/report/zh.po with its Chinese, or in
-                                   src/report/not_for_people.po; no entry is in no source any more; placeholders and what stands
-                                   in backticks are the same in both languages
+                                   src/report/not_for_people.po; no entry is in no source any more; placeholders with their formats, and
+                                   what stands in backticks, are the same in both languages
   catalogue.py ROOT update         adds what is missing, without Chinese, and drops what is in no source
   catalogue.py ROOT merge FILE...  takes the Chinese, and `#. not for people: WHY`, of other PO files
 
@@ -37,7 +37,8 @@ CHINESE_SOURCES = {
     'src/report/chinese_marks.cpp': 'marks',
     'src/report/chinese_marks.hpp': 'marks',
     'src/report/translation.cpp': 'words and marks between the parts of a list',
-    'src/show/axis_names.cpp': 'what stands before the number of a node',
+    'src/base/message.cpp': 'what is before the number of a node',
+    'src/show/axis_names.cpp': 'what is before the number of a node',
     'src/show/lead_words.cpp': 'words that people type',
     'src/show/topic_query.cpp': 'words that people type',
 }
@@ -45,7 +46,7 @@ NOT_FOR_PEOPLE = 'not for people'
 MADE_OF = 'made of'
 TOKEN = re.compile(r'R"\((?P<raw>.*?)\)"|"(?P<text>(?:[^"\\\n]|\\.)*)"|//[^\n]*|/\*.*?\*/|\'(?:[^\'\\]|\\(?:x[0-9A-Fa-f]+|[0-7]{1,3}|.))\'|\s+|.', re.S)
 ESCAPE = re.compile(r'\\(x[0-9A-Fa-f]+|u[0-9A-Fa-f]{4}|U[0-9A-Fa-f]{8}|[0-7]{1,3}|.)', re.S)
-PLACE = re.compile(r'\{(\d*)(?::(?:[^{}\n]|\{\d*\})*)?\}')
+PLACE = re.compile(r'\{(\d*)(:(?:[^{}\n]|\{\d*\})*)?\}')
 PLAIN = {'n': '\n', 't': '\t', 'r': '\r', 'a': '\a', 'b': '\b', 'e': '\x1b', 'f': '\f', 'v': '\v'}
 
 
@@ -141,10 +142,10 @@ def write(path, entries, about):
 
 
 def places(text):
-    """Which arguments stand in it, from 0."""
+    """Which arguments stand in it, from 0, each with its format: a code in hexadecimal is one in both languages."""
     text = text.replace('{{', '').replace('}}', '')
-    found = [match.group(1) for match in PLACE.finditer(text)]
-    return sorted({int(name) if name else at for at, name in enumerate(found)})
+    found = [match.groups() for match in PLACE.finditer(text)]
+    return sorted({(int(name) if name else at, form or '') for at, (name, form) in enumerate(found)})
 
 
 def ticked(text):
@@ -155,7 +156,7 @@ def wrong_in(entry):
     if not entry.chinese:
         return 'has no Chinese'
     if places(entry.text) != places(entry.chinese):
-        return 'has other placeholders in Chinese'
+        return 'has other placeholders or formats in Chinese'
     if ticked(entry.text) != ticked(entry.chinese):
         return 'has something else in backticks in Chinese'
     return ''

@@ -40,21 +40,24 @@ TEST_F(Abandoned, ADriveThatEndsInFaultInsteadOfObeyingIsAnError) {
   };
   const auto& errors = stop();
   ASSERT_EQ(errors.size(), 1U);
-  EXPECT_NE(errors[0].message.find("de-energised now, but in fault"), std::string::npos) << errors[0].message;
+  EXPECT_NE(errors[0].message.text().find("de-energised now, but in fault"), std::string::npos)
+      << errors[0].message.text();
 }
 
 TEST_F(Abandoned, ADriveThatFallsSilentIsAnError) {
   enabled = [&] { bench.drive().wire_faults().silent = true; };
   const auto& errors = stop();
   ASSERT_EQ(errors.size(), 1U);
-  EXPECT_TRUE(errors[0].message.starts_with("NODE 1 MAY STILL BE ENERGISED")) << errors[0].message;
+  EXPECT_TRUE(errors[0].message.text().starts_with("NODE 1 MAY STILL BE ENERGISED"))
+      << errors[0].message.text();
 }
 
 TEST_F(Abandoned, ADriveThatAbortsTheStopIsAnError) {
   enabled = [&] { bench.drive().wire_faults().no_stop = true; };
   const auto& errors = stop();
   ASSERT_EQ(errors.size(), 1U);
-  EXPECT_TRUE(errors[0].message.starts_with("NODE 1 MAY STILL BE ENERGISED")) << errors[0].message;
+  EXPECT_TRUE(errors[0].message.text().starts_with("NODE 1 MAY STILL BE ENERGISED"))
+      << errors[0].message.text();
 }
 
 }  // namespace

@@ -29,9 +29,9 @@ class EtherCatMotion : public session::EtherCatTest {
     MotionReport out;
     Motion motion(*session_, profile(), 1, options_);
     const auto ready = motion.prepare();
-    EXPECT_TRUE(ready) << ready.error().message;
+    EXPECT_TRUE(ready) << ready.error().message.text();
     const auto made = plan(motion, kind);
-    EXPECT_TRUE(made) << made.error().message;
+    EXPECT_TRUE(made) << made.error().message.text();
     before_ = objects();
     return go(motion, kind, *made);
   }
@@ -59,7 +59,7 @@ class EtherCatMotion : public session::EtherCatTest {
     return out;
   }
   void expect_left_alone(const MotionReport& done) {
-    EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+    EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
     EXPECT_TRUE(done.end.verified);
     EXPECT_EQ(done.end.notes, std::vector<std::string>{});
     EXPECT_EQ(done.end.left, std::vector<std::string>{});

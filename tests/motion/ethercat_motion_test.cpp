@@ -37,14 +37,14 @@ TEST_F(EtherCatMotion, ADriveThatRunsItsStateMachineInOpOnlyIsLookedAtAgainThere
   Motion motion(*session_, profile(), 1, options_);
   ASSERT_TRUE(motion.prepare());
   const auto items = motion.look(false);
-  ASSERT_TRUE(items) << items.error().message;
+  ASSERT_TRUE(items) << items.error().message.text();
   const auto state =
       std::find_if(items->begin(), items->end(), [](const auto& i) { return i.what == "state"; });
   ASSERT_NE(state, items->end());
   EXPECT_EQ(state->weight, PreflightItem::Weight::note) << state->text;
   EXPECT_NE(state->text.find("it is looked at again in OP"), std::string::npos) << state->text;
   const auto done = run(jog_for("60rpm", 1s), plan_jog, run_jog);
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   expect_safe();
 }
 
@@ -71,7 +71,8 @@ class AsleepOutsideOp : public EtherCatMotion {
   void expect_refused(const MotionReport& done, std::string_view why) {
     ASSERT_FALSE(done.outcome);
     EXPECT_EQ(done.outcome.error().code, Errc::refused);
-    EXPECT_NE(done.outcome.error().message.find(why), std::string::npos) << done.outcome.error().message;
+    EXPECT_NE(done.outcome.error().message.text().find(why), std::string::npos)
+        << done.outcome.error().message.text();
     EXPECT_FALSE(was_commanded);
     EXPECT_TRUE(done.samples.empty());
     expect_safe();
@@ -120,7 +121,7 @@ TEST_F(EtherCatMotion, LostFramesAreToldAndStopNothing) {
   expect_left_alone(jog());
   const auto notices = network().take_notices();
   ASSERT_FALSE(notices.empty());
-  EXPECT_NE(notices.front().find("frames lost"), std::string::npos) << notices.front();
+  EXPECT_NE(notices.front().text().find("frames lost"), std::string::npos) << notices.front().text();
 }
 
 TEST_F(EtherCatMotion, WhereTheCableIsCutTheDriveStopsByItselfAndNothingIsPromised) {
@@ -164,7 +165,7 @@ TEST_F(EtherCatMotion, CtrlCEndsItInPreOpWithoutPower) {
 TEST_F(EtherCatMotion, ADriveThatWasInOpIsBackInOpBehindAMotionWithItsTargetWhereItStands) {
   ASSERT_TRUE(network().request_state(1, session::NodeState::operational));
   const auto done = jog();
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_TRUE(done.end.verified);
   EXPECT_EQ(done.end.notes, std::vector<std::string>{});
   expect_safe();

@@ -62,7 +62,7 @@ class FaultyDrive {
 TEST(FaultReset, TakesTheEdgeBackWhateverGoesWrong) {
   FaultyDrive measure;
   const auto well = measure.reset({});
-  ASSERT_TRUE(well) << well.error().message;
+  ASSERT_TRUE(well) << well.error().message.text();
   EXPECT_EQ(*well, FaultReset::done);
   EXPECT_EQ(measure.last_controlword, "0000");
   for (auto session::Trouble::*kind : {&session::Trouble::cancel_at, &session::Trouble::abort_at})
@@ -92,7 +92,8 @@ TEST(FaultReset, SaysSoWhenTheDriveIsEnergisedAfterIt) {
   const auto done = reset_fault(session, nullptr, 1);
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::negative);
-  EXPECT_NE(done.error().message.find("it is energised"), std::string::npos) << done.error().message;
+  EXPECT_NE(done.error().message.text().find("it is energised"), std::string::npos)
+      << done.error().message.text();
 }
 
 TEST(FaultReset, WritesNothingToADriveWithoutFault) {

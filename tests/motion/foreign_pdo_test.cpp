@@ -17,7 +17,7 @@ class ForeignPdo : public testing::TestWithParam<Case> {
 
   void write(std::uint16_t index, std::uint8_t sub, std::uint64_t value, std::size_t size) {
     const auto done = bench.session->download(1, {index, sub}, store_le(value, size));
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
   }
   /// RPDO1 holds this object alone; its CAN-ID is 201h.
   void map(std::uint16_t index, unsigned bits) {
@@ -39,10 +39,10 @@ class ForeignPdo : public testing::TestWithParam<Case> {
   }
   void expect_noticed(const MotionReport& done, std::string_view object) {
     ASSERT_FALSE(done.outcome);
-    EXPECT_NE(
-        done.outcome.error().message.find("another master sent a PDO with object " + std::string(object)),
-        std::string::npos)
-        << done.outcome.error().message;
+    EXPECT_NE(done.outcome.error().message.text().find("another master sent a PDO with object " +
+                                                       std::string(object)),
+              std::string::npos)
+        << done.outcome.error().message.text();
     EXPECT_FALSE(bench.energised());
   }
 
@@ -85,7 +85,7 @@ TEST_P(ForeignPdo, ATargetThatIsSentAllTheTimeKeepsTheDriveFromBeingEnabled) {
   };
   const auto done = bench.jog(jog_for("60rpm", 1s));
   ASSERT_FALSE(done.outcome);
-  EXPECT_EQ(done.outcome.error().message,
+  EXPECT_EQ(done.outcome.error().message.text(),
             "another master sends PDOs with object 0x60FF:0: the drive was not enabled");
   EXPECT_EQ(enables, 0);
 }
@@ -95,7 +95,7 @@ TEST_P(ForeignPdo, WhatIsMappedToNothingOfTheMotionEndsNone) {
   order(canopen::NmtCommand::start);
   send_meanwhile("201#10270000");
   const auto done = bench.jog(jog_for("60rpm", 1s));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
 }
 
 /// By what another master could write is not known then.

@@ -38,7 +38,7 @@ TEST_P(LifeGuarding, IsWhatWatchesADriveWithoutAHeartbeatConsumer) {
   std::pair<std::uint64_t, std::uint64_t> set;
   bench.options.on_sample = [&](const MotionSample&) { set = {value(kGuardTime), value(kLifeFactor)}; };
   const auto done = bench.jog(jog_for("60rpm", 2s));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_EQ(set, std::pair(std::uint64_t{200}, std::uint64_t{5}));
   EXPECT_GE(questions(), 10);  // Five in the time of the watchdog, which is a second.
   EXPECT_EQ(bench.drive().power_state(), DriveState::switch_on_disabled);

@@ -24,12 +24,12 @@ TEST_P(ListeningToOthers, ComesBehindEverythingThatIsRefusedByReading) {
 TEST_P(ListeningToOthers, IsLeftOutWhereTheDriveRefusesTheMotion) {
   Power power(*bench.session, bench.profile(), 1);
   const auto on = power.reach(drive::DriveState::operation_enabled);
-  ASSERT_TRUE(on) << on.error().message;
+  ASSERT_TRUE(on) << on.error().message.text();
   begin = bench.session->now();
   Motion motion(*bench.session, bench.profile(), 1, bench.options);
   ASSERT_TRUE(motion.prepare());
   const auto items = motion.look(false);
-  ASSERT_TRUE(items) << items.error().message;
+  ASSERT_TRUE(items) << items.error().message.text();
   EXPECT_FALSE(check_preflight(*items, 1));
   EXPECT_LT(since_begin(), 500ms);
 }
@@ -39,7 +39,7 @@ TEST_P(ListeningToOthers, IsLeftOutInARehearsalWhichSaysSo) {
   Motion motion(*bench.session, bench.profile(), 1, bench.options);
   ASSERT_TRUE(motion.prepare());
   const auto items = motion.look(false);
-  ASSERT_TRUE(items) << items.error().message;
+  ASSERT_TRUE(items) << items.error().message.text();
   EXPECT_LT(since_begin(), 500ms);
   EXPECT_NE(items->back().text.find("before it moves, servoctl listens for 1 s"), std::string::npos)
       << items->back().text;
@@ -49,7 +49,7 @@ TEST_P(ListeningToOthers, IsDoneBeforeAMotionBeginsWhateverWasLookedAt) {
   Motion motion(*bench.session, bench.profile(), 1, bench.options);
   ASSERT_TRUE(motion.prepare());
   const auto plan = plan_jog(motion, jog_for("30rpm", 100ms));
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   (void)run_jog(motion, jog_for("30rpm", 100ms), *plan);
   EXPECT_GT(since_begin(), kListening - 100ms);
   EXPECT_EQ(motion.watchdog().kind, WatchdogPlan::Kind::heartbeat);

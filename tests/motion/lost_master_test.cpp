@@ -15,18 +15,18 @@ class LostMasterOf : public testing::TestWithParam<std::string_view> {};
 TEST_P(LostMasterOf, IsToldAlikeBeforeAndAfterAMotionAndByTheCommand) {
   MotionBench bench(GetParam());
   const auto plan = plan_watchdog(*bench.session, bench.profile(), 1, {});
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   if (plan->kind == WatchdogPlan::Kind::heartbeat) {
     const auto armed = bench.session->download(1, {objects::kConsumerHeartbeatIndex, plan->entry},
                                                store_le(std::uint32_t{plan->producer} << 16U | 500U, 4));
-    ASSERT_TRUE(armed) << armed.error().message;
+    ASSERT_TRUE(armed) << armed.error().message.text();
   }
   if (plan->reaction_off) {
     ASSERT_TRUE(bench.session->download(1, objects::kAbortConnectionOption, store_le(kReactWithFault, 2)));
   }
   constexpr std::uint8_t kNodes[] = {1};
   const auto report = read_watchdogs(*bench.session, bench.profile(), kNodes).front();
-  ASSERT_TRUE(report) << report.error().message;
+  ASSERT_TRUE(report) << report.error().message.text();
 
   const bool sure = report->stops == Stops::yes;
   EXPECT_EQ(sure, GetParam() == "cia402");
@@ -46,7 +46,7 @@ TEST(LostMasterFacts, OfADriveThatNobodyKnowsAreNotTakenFromTheListOfTheStandard
   MotionBench bench("cia402");
   ASSERT_TRUE(bench.session->download(1, objects::kAbortConnectionOption, store_le(0xFFFFU, 2)));
   const auto plan = plan_watchdog(*bench.session, bench.profile(), 1, {});
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   EXPECT_EQ(plan->stops(), Stops::unknown);
   EXPECT_NE(to_string(*plan).find("6007h = -1 does not tell it"), std::string::npos) << to_string(*plan);
 }
@@ -108,7 +108,7 @@ TEST(LostMasterFacts, ThatTheFaultTakesThePowerIsToldBeforeAndByTheCommand) {
   auto family = bench.profile();
   std::erase(family.rules.assumed, "watchdog");
   const auto plan = plan_watchdog(*bench.session, family, 1, {});
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   EXPECT_EQ(plan->stops(), Stops::yes);
   const auto entry = store_le(std::uint32_t{plan->producer} << 16U | 500U, 4);
   ASSERT_TRUE(bench.session->download(1, {objects::kConsumerHeartbeatIndex, plan->entry}, entry));
@@ -147,7 +147,7 @@ class UnreadReaction : public testing::Test {
 TEST_F(UnreadReaction, LeavesOpenWhatTheMotorDoes) {
   set_behaviour(1);
   const auto found = plan();
-  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found) << found.error().message.text();
   EXPECT_EQ(found->option, std::nullopt);
   EXPECT_FALSE(found->reaction_off) << "it is not written either";
   EXPECT_EQ(found->stops(), Stops::unknown);

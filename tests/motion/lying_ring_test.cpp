@@ -78,8 +78,8 @@ TEST_F(LyingRing, StopWordsAreInTheOutputsAtOnceWhateverTheWorkingCounterIs) {
       lie(fmt::format("lie={}&lie-after=900ms", word));
       const auto done = motions()[i]();
       ASSERT_FALSE(done.outcome);
-      EXPECT_NE(done.outcome.error().message.find("working counter"), std::string::npos)
-          << done.outcome.error().message;
+      EXPECT_NE(done.outcome.error().message.text().find("working counter"), std::string::npos)
+          << done.outcome.error().message.text();
       EXPECT_LT(until_stop(), 80ms);
       EXPECT_LT(until_power_gone(), 500ms);
       expect_safe();

@@ -21,8 +21,10 @@ void expect_refused(MotionBench& bench, const std::string& method, std::string_v
   const auto done = planned(bench, method);
   ASSERT_FALSE(done) << method;
   EXPECT_EQ(done.error().code, Errc::refused) << method;
-  EXPECT_NE(done.error().message.find(why), std::string::npos) << method << ": " << done.error().message;
-  EXPECT_NE(done.error().hint.find(remedy), std::string::npos) << method << ": " << done.error().hint;
+  EXPECT_NE(done.error().message.text().find(why), std::string::npos)
+      << method << ": " << done.error().message.text();
+  EXPECT_NE(done.error().hint.text().find(remedy), std::string::npos)
+      << method << ": " << done.error().hint.text();
 }
 
 void set_mask(MotionBench& bench, unsigned value) {
@@ -103,7 +105,7 @@ TEST(MaskedSwitch, WhatCanBeReadIsNotToldByThePanelOption) {
   bench.options.panel["Pn0603"] = 0;
   const auto done = planned(bench, "17");
   ASSERT_FALSE(done);
-  EXPECT_EQ(done.error().code, Errc::usage) << done.error().message;
+  EXPECT_EQ(done.error().code, Errc::usage) << done.error().message.text();
 }
 
 TEST(MaskedSwitch, HomingToItWorksOnceTheDriveIsToldToObeyIt) {
@@ -111,7 +113,7 @@ TEST(MaskedSwitch, HomingToItWorksOnceTheDriveIsToldToObeyIt) {
     MotionBench bench(family, 131072);
     bench.obey_switches();
     const auto done = bench.home(home_by("17"));
-    EXPECT_TRUE(done.outcome) << family << ": " << done.outcome.error().message;
+    EXPECT_TRUE(done.outcome) << family << ": " << done.outcome.error().message.text();
   }
 }
 

@@ -21,7 +21,8 @@ class MeasuredTruth : public testing::Test {
  protected:
   void expect_ended(const MotionReport& done, std::string_view reason) {
     ASSERT_FALSE(done.outcome);
-    EXPECT_NE(done.outcome.error().message.find(reason), std::string::npos) << done.outcome.error().message;
+    EXPECT_NE(done.outcome.error().message.text().find(reason), std::string::npos)
+        << done.outcome.error().message.text();
     EXPECT_FALSE(bench.energised());
   }
   Duration length(const MotionReport& done) { return done.samples.back().time - done.samples.front().time; }
@@ -49,7 +50,7 @@ TEST_F(MeasuredTruth, AMotorThatNeverMovesIsNotDoneHoweverShortTheJog) {
 TEST_F(MeasuredTruth, AJogAsShortAsItsRampIsDone) {
   for (const auto time : {100ms, 300ms, 1000ms}) {
     const auto done = bench.jog(jog_for("-60rpm", time));
-    ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+    ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
     EXPECT_EQ(done.differences, std::vector<std::string>{}) << time.count();
   }
 }
@@ -130,10 +131,10 @@ TEST_F(MeasuredTruth, ADriveThatAnotherMasterCommandsIsNotEnabled) {
   };
   const auto done = bench.jog(jog_for("60rpm", 1s));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find(
+  EXPECT_NE(done.outcome.error().message.text().find(
                 "another master has written object 0x60FF:0: the drive was not enabled"),
             std::string::npos)
-      << done.outcome.error().message;
+      << done.outcome.error().message.text();
   EXPECT_EQ(enables, 0);
 }
 
@@ -149,8 +150,9 @@ TEST_F(MeasuredTruth, WhatAnotherMasterWritesEndsMovesAndTorques) {
   };
   const auto pushed = own.torque({.torque = "1%", .length = 1s});
   ASSERT_FALSE(pushed.outcome);
-  EXPECT_NE(pushed.outcome.error().message.find("another master wrote object 0x607A:0"), std::string::npos)
-      << pushed.outcome.error().message;
+  EXPECT_NE(pushed.outcome.error().message.text().find("another master wrote object 0x607A:0"),
+            std::string::npos)
+      << pushed.outcome.error().message.text();
 }
 
 /// By which targets may come that nobody has seen.
@@ -167,7 +169,7 @@ TEST_F(MeasuredTruth, AModeThatCannotGoBackToNoneIsANote) {
     if (++samples == 5) own.drive().misbehaviour().refused = {0x6060};
   };
   const auto done = own.jog(jog_for("60rpm", 1s));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_EQ(done.end.left, std::vector<std::string>{});
   ASSERT_EQ(done.end.notes.size(), 1U);
   EXPECT_NE(done.end.notes.front().find("6060h was 0"), std::string::npos);
@@ -178,8 +180,8 @@ TEST(FloatTarget, SoFarThatItsStepsAreTooGreatIsRefused) {
   const auto done = bench.move(move_to("1e30deg", "60rpm"));
   ASSERT_FALSE(done.outcome);
   EXPECT_EQ(done.outcome.error().code, Errc::usage);
-  EXPECT_NE(done.outcome.error().message.find("is too far"), std::string::npos)
-      << done.outcome.error().message;
+  EXPECT_NE(done.outcome.error().message.text().find("is too far"), std::string::npos)
+      << done.outcome.error().message.text();
   EXPECT_FALSE(done.begun);
 }
 
@@ -198,7 +200,7 @@ class StuckAttained : public testing::Test {
 
 TEST_F(StuckAttained, HasBegunWhereTheMotorMovesAndEndsWhereItStays) {
   const auto done = bench.home(home_by("17"));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   ASSERT_EQ(done.unchecked.size(), 1U);
   EXPECT_NE(done.unchecked.front().find("was set all the time"), std::string::npos);
 }
@@ -207,7 +209,7 @@ TEST_F(StuckAttained, HasNotBegunWhereTheMotorStands) {
   bench.drive().axis_faults().late_start = 1h;
   const auto done = bench.home(home_by("17"));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("does not start homing"), std::string::npos);
+  EXPECT_NE(done.outcome.error().message.text().find("does not start homing"), std::string::npos);
 }
 
 }  // namespace

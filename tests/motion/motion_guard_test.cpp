@@ -16,13 +16,13 @@ TEST_F(MotionTrouble, AWayThatWasToldFromElsewhereIsNotGone) {
   bench.started = [&] {
     bench.started = {};
     const auto others = bench.jog(jog_turns("60rpm", 2));
-    ASSERT_TRUE(others.outcome) << others.outcome.error().message;
+    ASSERT_TRUE(others.outcome) << others.outcome.error().message.text();
   };
   const auto before = bench.session->now();
   const auto done = bench.move(move_to("90deg", "60rpm", true));
   ASSERT_FALSE(done.outcome);
   EXPECT_EQ(done.outcome.error().code, Errc::refused);
-  EXPECT_NE(done.outcome.error().message.find("has moved since"), std::string::npos);
+  EXPECT_NE(done.outcome.error().message.text().find("has moved since"), std::string::npos);
   EXPECT_FALSE(done.begun);
   EXPECT_LT(bench.session->now() - before, 5s);
 }
@@ -35,7 +35,7 @@ TEST_F(MotionTrouble, ADriveThatSomebodyElseHasEnabledMeanwhileIsNotTouched) {
   const auto done = bench.jog(kJog);
   ASSERT_FALSE(done.outcome);
   EXPECT_EQ(done.outcome.error().code, Errc::refused);
-  EXPECT_NE(done.outcome.error().message.find("somebody else"), std::string::npos);
+  EXPECT_NE(done.outcome.error().message.text().find("somebody else"), std::string::npos);
   EXPECT_FALSE(done.begun);
   EXPECT_TRUE(bench.energised()) << "it belongs to the other master";
   for (const auto& frame : bench.bus->frames) EXPECT_EQ(frame.substr(0, 6), "601#40") << frame;
@@ -45,7 +45,7 @@ TEST_F(MotionTrouble, ADriveThatSomebodyElseHasEnabledMeanwhileIsNotTouched) {
 TEST_F(MotionTrouble, AnswersToOtherMastersFromBeforeAreNotTakenForItsOwn) {
   bench.started = [&] { bench.bus->injected = {"581#4B41600037060000"}; };  // Operation enabled.
   const auto done = bench.jog(jog_for("60rpm", 200ms));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
 }
 
 TEST_F(MotionTrouble, ARunawayInTheRightDirectionIsStopped) {
@@ -117,7 +117,7 @@ void map_tpdo(MotionBench& bench) {
 TEST_F(MotionTrouble, WhatATpdoBringsIsNotReadBySdo) {
   map_tpdo(bench);
   const auto done = bench.jog(jog_turns("60rpm", 2));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_NEAR(*done.samples.back()[Signal::position], 720, 30);
   EXPECT_GT(done.by_pdo, 2 * done.samples.size() * 9 / 10);
   const auto& frames = bench.bus->frames;
@@ -136,7 +136,7 @@ TEST_F(MotionTrouble, ATpdoThatIsOldOrOfAnotherLengthIsNotBelieved) {
     if (frame.id == 0x181) frame.size = 8;
   };
   const auto done = bench.jog(jog_for("60rpm", 500ms));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_EQ(done.by_pdo, 0U);
 }
 
@@ -160,7 +160,7 @@ TEST_F(MotionTrouble, OnceAnotherMasterChangesTheMappingEverythingIsReadBySdo) {
     frame.data[1] = 0;
   };
   const auto done = bench.jog(jog_turns("60rpm", 2));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_TRUE(written);
   EXPECT_GT(done.by_pdo, 0U);
   EXPECT_NE(
@@ -172,7 +172,7 @@ TEST_F(MotionTrouble, OnceAnotherMasterChangesTheMappingEverythingIsReadBySdo) {
 TEST_F(MotionTrouble, AShortMoveIsDoneWhenTheMotorIsThereAndNotBefore) {
   MotionBench own("dm", 0);
   const auto done = own.move(move_to("0.4deg", "30rpm", true));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_NEAR(*done.samples.back()[Signal::position], 0.4, 0.05);
 }
 
@@ -183,7 +183,7 @@ TEST_F(MotionTrouble, BothHomingSpeedsAreBoundByTheLimit) {
   const auto done = bench.home(home);
   ASSERT_FALSE(done.outcome);
   EXPECT_EQ(done.outcome.error().code, Errc::refused);
-  EXPECT_NE(done.outcome.error().message.find("3000 rpm is above the limit"), std::string::npos);
+  EXPECT_NE(done.outcome.error().message.text().find("3000 rpm is above the limit"), std::string::npos);
 }
 
 TEST_F(MotionTrouble, ANewZeroIsNoWay) {
@@ -192,7 +192,7 @@ TEST_F(MotionTrouble, ANewZeroIsNoWay) {
   bench.drive().track().negative_limit.to = 2;  // A turn from where it stands, so it stays in the window.
   bench.options.window = "2.5rev";
   const auto done = bench.home(home_by("1"));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
 }
 
 TEST_F(MotionTrouble, AnAccelerationThatIsNoneIsToldBeforeAnythingIsTouched) {

@@ -9,8 +9,8 @@ using namespace std::chrono_literals;
 
 void expect_refused(LearnBench& bench, const LearnReport& done, std::string_view why) {
   ASSERT_FALSE(done.motion.outcome);
-  EXPECT_NE(done.motion.outcome.error().message.find(why), std::string::npos)
-      << done.motion.outcome.error().message;
+  EXPECT_NE(done.motion.outcome.error().message.text().find(why), std::string::npos)
+      << done.motion.outcome.error().message.text();
   EXPECT_FALSE(done.counts);
   EXPECT_FALSE(bench.energised());
   if (!done.motion.begun) return;
@@ -23,7 +23,7 @@ TEST(Learn, FindsEveryPowerOfTwoWithoutKnowingItsSize) {
     SCOPED_TRACE(bits);
     LearnBench bench(std::ldexp(1, bits));
     const auto done = bench.learn();
-    ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message;
+    ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message.text();
     ASSERT_TRUE(done.counts);
     EXPECT_EQ(done.counts->counts, std::ldexp(1, bits));
     EXPECT_NE(done.counts->reason.find("2^" + std::to_string(bits)), std::string::npos)
@@ -41,7 +41,7 @@ TEST(Learn, TurnsTheOtherWayWhereThatIsAsked) {
   LearnBench bench(131072);
   bench.how.rpm = -20;
   const auto done = bench.learn();
-  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message;
+  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message.text();
   EXPECT_EQ(done.counts->counts, 131072);
   EXPECT_LT(done.motion.series.front().values.back(), 0);
 }
@@ -50,7 +50,7 @@ TEST(Learn, TakesTheGearOut) {
   LearnBench bench(8388608);
   ASSERT_TRUE(bench.session->download(1, {0x6091, 1}, store_le(2, 4)));
   const auto done = bench.learn();
-  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message;
+  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message.text();
   EXPECT_EQ(done.counts->counts, 8388608);
   EXPECT_NEAR(done.measured->increments, 4194304, 4194304 * 0.004);
 }
@@ -58,7 +58,7 @@ TEST(Learn, TakesTheGearOut) {
 TEST(Learn, TakesADecimalNumberOnlyWhereTheScaleOfTheMonitorIsCertainOrSomebodyKnowsIt) {
   LearnBench certain(100000);
   const auto taken = certain.learn();
-  ASSERT_TRUE(taken.motion.outcome) << taken.motion.outcome.error().message;
+  ASSERT_TRUE(taken.motion.outcome) << taken.motion.outcome.error().message.text();
   EXPECT_EQ(taken.counts->counts, 100000);
 
   LearnBench disputed(100000);
@@ -107,7 +107,7 @@ TEST(Learn, ToleratesTheNoiseOfAMonitor) {
     return raw == 0 ? 0 : raw + (static_cast<double>(seed >> 16U) / 65536 - 0.5) * 20;  // ±1 rpm
   });
   const auto done = bench.learn();
-  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message;
+  ASSERT_TRUE(done.motion.outcome) << done.motion.outcome.error().message.text();
   EXPECT_EQ(done.counts->counts, 8388608);
 }
 
@@ -174,8 +174,8 @@ TEST(Learn, StopsAMotionWhoseKeptNumberIsThatOfAnotherMotor) {
   bench.options.learned = 8388608;
   const auto done = bench.jog(jog_for("60rpm", 5s));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("by the kept counts per rev"), std::string::npos)
-      << done.outcome.error().message;
+  EXPECT_NE(done.outcome.error().message.text().find("by the kept counts per rev"), std::string::npos)
+      << done.outcome.error().message.text();
   EXPECT_FALSE(bench.energised());
   EXPECT_LT(done.series.front().values.back(), 360);
 
@@ -183,7 +183,7 @@ TEST(Learn, StopsAMotionWhoseKeptNumberIsThatOfAnotherMotor) {
   right.options.learned = 8388608;
   EXPECT_TRUE(right.jog(jog_for("60rpm", 2s)).outcome);
   const auto moved = right.move(move_to("720deg", "60rpm", true));
-  EXPECT_TRUE(moved.outcome) << moved.outcome.error().message;
+  EXPECT_TRUE(moved.outcome) << moved.outcome.error().message.text();
 }
 
 TEST(Learn, StopsAMotionWhoseParametersAreSetAndNotInForce) {
@@ -195,16 +195,17 @@ TEST(Learn, StopsAMotionWhoseParametersAreSetAndNotInForce) {
     ASSERT_TRUE(bench.session->download(1, {0x2002, 0x3B}, store_le(8388608, 4)));  // Pn0458
     const auto done = motion(bench);
     ASSERT_FALSE(done.outcome);
-    EXPECT_NE(done.outcome.error().message.find("by the 8388608 increments per revolution in its parameters"),
+    EXPECT_NE(done.outcome.error().message.text().find(
+                  "by the 8388608 increments per revolution in its parameters"),
               std::string::npos)
-        << done.outcome.error().message;
-    EXPECT_NE(done.outcome.error().hint.find("Pn0458, Pn0456"), std::string::npos)
-        << done.outcome.error().hint;
+        << done.outcome.error().message.text();
+    EXPECT_NE(done.outcome.error().hint.text().find("Pn0458, Pn0456"), std::string::npos)
+        << done.outcome.error().hint.text();
     EXPECT_FALSE(bench.energised());
     ASSERT_TRUE(bench.session->can()->send(*can::parse_frame("000#8101")));
     bench.wait(1s);
     const auto again = motion(bench);
-    EXPECT_TRUE(again.outcome) << again.outcome.error().message;
+    EXPECT_TRUE(again.outcome) << again.outcome.error().message.text();
   }
 }
 
@@ -213,7 +214,7 @@ TEST(Learn, GoesOnWithWhatItsParametersTellWhereTheDriveDoesNotHaveTheMonitor) {
   ASSERT_TRUE(bench.session->download(1, kMode, store_le(1, 2)));
   bench.drive().misbehaviour().unreadable.insert(0x2005);
   const auto done = bench.jog(jog_for("60rpm", 1s));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   ASSERT_FALSE(done.unchecked.empty());
   EXPECT_NE(done.unchecked.front().find("not compared with Pn1002"), std::string::npos);
 }
@@ -224,15 +225,15 @@ TEST(Learn, NamesTheOtherScaleOfTheMonitorWhereThatWouldExplainTheContradiction)
   bench.lie([](double tenths) { return tenths * 10; });
   const auto done = bench.jog(jog_for("60rpm", 1s));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().hint.find("two scales of Pn1002"), std::string::npos)
-      << done.outcome.error().hint;
+  EXPECT_NE(done.outcome.error().hint.text().find("two scales of Pn1002"), std::string::npos)
+      << done.outcome.error().hint.text();
 
   LearnBench other(131072);
   ASSERT_TRUE(other.session->download(1, kMode, store_le(1, 2)));
   other.lie([](double tenths) { return tenths * 3; });
   const auto thrice = other.jog(jog_for("60rpm", 1s));
   ASSERT_FALSE(thrice.outcome);
-  EXPECT_EQ(thrice.outcome.error().hint.find("two scales"), std::string::npos);
+  EXPECT_EQ(thrice.outcome.error().hint.text().find("two scales"), std::string::npos);
 }
 
 TEST(Learn, LeavesAMotionAloneThatIsToldItsCounts) {
@@ -241,7 +242,7 @@ TEST(Learn, LeavesAMotionAloneThatIsToldItsCounts) {
   ASSERT_TRUE(bench.session->download(1, {0x2002, 0x3B}, store_le(8388608, 4)));
   bench.options.turn = 131072;
   const auto done = bench.jog(jog_for("60rpm", 1s));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
 }
 
 TEST(Learn, StopsAMotorThatItsMonitorShowsTooFastWhereTheCountsWereToldWrong) {
@@ -254,9 +255,10 @@ TEST(Learn, StopsAMotorThatItsMonitorShowsTooFastWhereTheCountsWereToldWrong) {
                                                     : bench.torque({"20%", 2s});
     ASSERT_FALSE(done.outcome) << kind;
     const auto& error = done.outcome.error();
-    EXPECT_EQ(error.code, Errc::negative) << kind << ": " << error.message;
-    EXPECT_NE(error.message.find("rpm by Pn1002, but "), std::string::npos) << error.message;
-    EXPECT_NE(error.hint.find("counts per revolution are probably wrong: `units learn`"), std::string::npos);
+    EXPECT_EQ(error.code, Errc::negative) << kind << ": " << error.message.text();
+    EXPECT_NE(error.message.text().find("rpm by Pn1002, but "), std::string::npos) << error.message.text();
+    EXPECT_NE(error.hint.text().find("counts per revolution are probably wrong: `units learn`"),
+              std::string::npos);
     EXPECT_TRUE(done.end.verified);
     EXPECT_FALSE(bench.energised());
     double furthest = 0;
@@ -271,7 +273,7 @@ TEST(Learn, GoesOnWithToldCountsWhereTheDriveDoesNotHaveTheMonitor) {
   bench.options.turn = 131072;
   bench.drive().misbehaviour().unreadable.insert(0x2005);
   const auto done = bench.jog(jog_for("60rpm", 1s));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   ASSERT_FALSE(done.unchecked.empty());
   EXPECT_NE(done.unchecked.front().find("not compared with Pn1002"), std::string::npos);
 }

@@ -21,10 +21,10 @@ TEST(MotionNeeds, NamesTheObjectAndTheModeThatADataSheetLacks) {
   const auto jog = mode_for(profile, drive::Use::jog);
   ASSERT_FALSE(jog);
   EXPECT_EQ(jog.error().code, Errc::refused);
-  EXPECT_NE(jog.error().message.find("has no 0x60FF:0 (Target velocity), and its 0x6502 is 0x21"),
+  EXPECT_NE(jog.error().message.text().find("has no 0x60FF:0 (Target velocity), and its 0x6502 is 0x21"),
             std::string::npos)
-      << jog.error().message;
-  EXPECT_EQ(jog.error().hint, "possible with this drive: `move`");
+      << jog.error().message.text();
+  EXPECT_EQ(jog.error().hint.text(), "possible with this drive: `move`");
   EXPECT_FALSE(mode_for(profile, drive::Use::torque));
 }
 
@@ -32,9 +32,9 @@ TEST(MotionNeeds, NamesTheObjectAndTheModeThatADataSheetLacks) {
 TEST(MotionNeeds, SaysWhatACommandNeedsWhereTheModeIsThere) {
   const auto home = mode_for(profile_of("pp.eds"), drive::Use::home);
   ASSERT_FALSE(home);
-  EXPECT_NE(home.error().message.find("has no 0x6098:0 (Homing method), which `home` needs"),
+  EXPECT_NE(home.error().message.text().find("has no 0x6098:0 (Homing method), which `home` needs"),
             std::string::npos)
-      << home.error().message;
+      << home.error().message.text();
 }
 
 TEST(MotionNeeds, FindsEveryModeOfTheStandard) {

@@ -201,7 +201,8 @@ class MotionTrouble : public testing::Test {
  protected:
   void expect_stopped(const MotionReport& done, std::string_view reason) {
     ASSERT_FALSE(done.outcome);
-    EXPECT_NE(done.outcome.error().message.find(reason), std::string::npos) << done.outcome.error().message;
+    EXPECT_NE(done.outcome.error().message.text().find(reason), std::string::npos)
+        << done.outcome.error().message.text();
     EXPECT_TRUE(done.end.verified);
     EXPECT_FALSE(bench.energised());
     EXPECT_EQ(bench.changed(), std::vector<std::string>{});

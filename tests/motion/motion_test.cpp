@@ -84,7 +84,7 @@ TEST_P(MotionOfFamily, ATimedMotionEndsInTimeThoughReadsAreNotAnswered) {
 
 TEST_P(MotionOfFamily, JogTurnsForATimeAndLeavesNothingBehind) {
   const auto done = bench.jog(jog_for("60rpm", 1s));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_NEAR(greatest(done, Signal::velocity), 60, 1);
   EXPECT_GT(last(done, Signal::position), 200);
   expect_left_alone(done);
@@ -92,7 +92,7 @@ TEST_P(MotionOfFamily, JogTurnsForATimeAndLeavesNothingBehind) {
 
 TEST_P(MotionOfFamily, JogTurnsBackwardsSoManyTurns) {
   const auto done = bench.jog(jog_turns("-120rpm", 2));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_NEAR(last(done, Signal::position), -720, 30);
   expect_left_alone(done);
 }
@@ -100,7 +100,7 @@ TEST_P(MotionOfFamily, JogTurnsBackwardsSoManyTurns) {
 TEST_P(MotionOfFamily, MoveArrivesAtItsTargetAndLeavesNothingBehind) {
   for (const char* target : {"180deg", "-90deg"}) {
     const auto done = bench.move(move_to(target, "60rpm"));
-    ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+    ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
     EXPECT_NEAR(last(done, Signal::position), std::atof(target), 3);
     EXPECT_LT(greatest(done, Signal::velocity), 61);
     expect_left_alone(done);
@@ -110,7 +110,7 @@ TEST_P(MotionOfFamily, MoveArrivesAtItsTargetAndLeavesNothingBehind) {
 TEST_P(MotionOfFamily, RelativeMoveCountsFromWhereTheMotorStands) {
   for (int i = 1; i <= 2; ++i) {
     const auto done = bench.move(move_to("90deg", "60rpm", true));
-    ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+    ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
     EXPECT_NEAR(last(done, Signal::position), 90 * i, 3);
   }
 }
@@ -125,7 +125,7 @@ TEST_P(MotionOfFamily, HomingEndsHomedAndIsNotTakenFromAnEarlierRun) {
       EXPECT_EQ(done.outcome.error().code, Errc::refused);
       return;
     }
-    ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+    ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
     // It has at least a turn to go: an answer that was there before would come at once.
     EXPECT_GE(done.samples.back().time - done.samples.front().time, 900ms);
     expect_left_alone(done);
@@ -136,7 +136,7 @@ TEST_P(MotionOfFamily, HomingEndsHomedAndIsNotTakenFromAnEarlierRun) {
 TEST_P(MotionOfFamily, TorquePushesForATimeAndNoFasterThanItsLimit) {
   bench.options.speed_limit = "100rpm";
   const auto done = bench.torque({.torque = GetParam().torque, .length = 500ms});
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_GT(greatest(done, Signal::velocity), 0);
   EXPECT_LE(greatest(done, Signal::velocity), 120);
   expect_left_alone(done);
@@ -245,7 +245,8 @@ TEST_P(MotionOfFamily, AFaultInMidMoveEndsItWithTheReason) {
   const auto done = bench.jog(jog_for("60rpm", 5s));
   ASSERT_FALSE(done.outcome);
   EXPECT_EQ(done.outcome.error().code, Errc::negative);
-  EXPECT_NE(done.outcome.error().message.find("0x2310"), std::string::npos) << done.outcome.error().message;
+  EXPECT_NE(done.outcome.error().message.text().find("0x2310"), std::string::npos)
+      << done.outcome.error().message.text();
   EXPECT_TRUE(done.end.verified || !done.begun);
   EXPECT_EQ(done.end.state, DriveState::fault);
   EXPECT_EQ(bench.changed(), std::vector<std::string>{});

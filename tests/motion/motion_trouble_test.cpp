@@ -23,7 +23,7 @@ TEST_F(MotionTrouble, AMotorThatDoesNotTurnIsGivenUp) {
   own.drive().axis_faults().stalled = true;
   const auto done = own.jog(kJog);
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("does not turn"), std::string::npos);
+  EXPECT_NE(done.outcome.error().message.text().find("does not turn"), std::string::npos);
   EXPECT_FALSE(own.energised());
   EXPECT_EQ(own.changed(), std::vector<std::string>{});
 }
@@ -33,8 +33,8 @@ TEST_F(MotionTrouble, AMoveAwayFromItsTargetIsStoppedAtOnce) {
   own.drive().axis_faults().reversed = true;
   const auto done = own.move(move_to("5rev", "250rpm"));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("goes the wrong way"), std::string::npos)
-      << done.outcome.error().message;
+  EXPECT_NE(done.outcome.error().message.text().find("goes the wrong way"), std::string::npos)
+      << done.outcome.error().message.text();
   ASSERT_FALSE(done.samples.empty());
   EXPECT_LT(done.samples.back().time - done.samples.front().time, 1s);
   EXPECT_FALSE(own.energised());
@@ -45,7 +45,8 @@ TEST_F(MotionTrouble, AStallOnTheWayToATargetIsAFollowingError) {
   bench.drive().axis_faults().stalled = true;
   const auto done = bench.move(move_to("5rev", "250rpm"));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("0x8611"), std::string::npos) << done.outcome.error().message;
+  EXPECT_NE(done.outcome.error().message.text().find("0x8611"), std::string::npos)
+      << done.outcome.error().message.text();
   EXPECT_EQ(done.end.state, DriveState::fault);
   EXPECT_FALSE(bench.energised());
 }
@@ -63,7 +64,7 @@ TEST_F(MotionTrouble, AFollowingErrorAboveItsLimitStopsTheMotion) {
   own.drive().axis_faults().lag = 0.05;
   const auto done = own.jog(kJog);
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("following error"), std::string::npos);
+  EXPECT_NE(done.outcome.error().message.text().find("following error"), std::string::npos);
   EXPECT_FALSE(own.energised());
 }
 
@@ -88,7 +89,7 @@ TEST_F(MotionTrouble, AStuckSwitchEndsHomingWithItsError) {
   // The error bit of that run does not end the next one before it begins.
   bench.drive().track().negative_limit.stuck.reset();
   const auto again = bench.home(home_by("1"));
-  EXPECT_TRUE(again.outcome) << again.outcome.error().message;
+  EXPECT_TRUE(again.outcome) << again.outcome.error().message.text();
 }
 
 TEST_F(MotionTrouble, HomedFromAnEarlierRunIsNotBelievedWhileTheDriveTakesItsTimeToBegin) {
@@ -96,7 +97,7 @@ TEST_F(MotionTrouble, HomedFromAnEarlierRunIsNotBelievedWhileTheDriveTakesItsTim
   ASSERT_TRUE(bench.home(home_by("1")).outcome);
   bench.drive().axis_faults().late_start = 100ms;
   const auto done = bench.home(home_by("1"));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_GE(done.samples.back().time - done.samples.front().time, 390ms);
 }
 
@@ -110,7 +111,7 @@ TEST_F(MotionTrouble, ADriveThatNeverBeginsToLookForHomeIsGivenUp) {
 TEST_F(MotionTrouble, AValueTheDriveWouldRefuseIsNotPutBackButTold) {
   MotionBench own("da200", 10000);  // Starts with method 0, which is none; a refused write is a fault there.
   const auto done = own.home(home_by("1"));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_EQ(own.drive().power_state(), DriveState::switch_on_disabled);
   ASSERT_EQ(done.end.notes.size(), 1U);
   EXPECT_EQ(done.end.notes[0], "object 0x6098:0 keeps its new value: its old value, 00, is out of its range");
@@ -229,7 +230,7 @@ TEST_F(MotionTrouble, KeysTurnWhileTheyAreHeld) {
                          : HoldKey::stop;
   };
   const auto done = bench.jog(jog);
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   double most = 0;
   double least = 0;
   for (const auto& sample : done.samples) {

@@ -23,8 +23,8 @@ class ValuesOfFamily : public testing::TestWithParam<Asked> {
     ASSERT_FALSE(done.outcome) << about;
     const auto code = done.outcome.error().code;
     EXPECT_TRUE(code == Errc::usage || code == Errc::refused)
-        << about << ": " << done.outcome.error().message;
-    EXPECT_FALSE(done.outcome.error().hint.empty() && done.outcome.error().message.empty());
+        << about << ": " << done.outcome.error().message.text();
+    EXPECT_FALSE(done.outcome.error().hint.text().empty() && done.outcome.error().message.text().empty());
     EXPECT_FALSE(done.begun) << about;
     for (const auto& frame : bench.bus->frames)
       EXPECT_NE(frame.substr(0, 5), "601#2") << about << " " << frame;
@@ -54,8 +54,9 @@ TEST_P(ValuesOfFamily, ANumberWithoutAUnitMovesNothing) {
   expect_refused(bench.jog(jog_for("60", 1s)), "jog 60");
   expect_refused(bench.jog(jog_for("0x3C", 1s)), "jog 0x3C");
   const auto bare = bench.move(move_to("90", "30rpm", true));
-  EXPECT_EQ(bare.outcome.error().message, "'90' has no unit");
-  EXPECT_NE(bare.outcome.error().hint.find("deg, rev, rad"), std::string::npos) << bare.outcome.error().hint;
+  EXPECT_EQ(bare.outcome.error().message.text(), "'90' has no unit");
+  EXPECT_NE(bare.outcome.error().hint.text().find("deg, rev, rad"), std::string::npos)
+      << bare.outcome.error().hint.text();
   bench.options.window = "10";
   expect_refused(bench.jog(jog_for("30rpm", 1s)), "--window 10");
   bench.options.window.clear();
@@ -67,7 +68,7 @@ TEST_P(ValuesOfFamily, ANumberWithoutAUnitMovesNothing) {
 
 TEST_P(ValuesOfFamily, ZeroNeedsNoUnit) {
   const auto done = bench.move(move_to("0", "30rpm"));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
 }
 
 TEST_P(ValuesOfFamily, ATorqueAboveTheRatedOneIsRefusedAndRaisedKnowingly) {
@@ -78,7 +79,7 @@ TEST_P(ValuesOfFamily, ATorqueAboveTheRatedOneIsRefusedAndRaisedKnowingly) {
   bench.options.max_torque = in_nm ? "4Nm" : "120%";
   const auto more = bench.torque({.torque = in_nm ? "3.5Nm" : "110%", .length = 100ms});
   if (!more.outcome) {
-    EXPECT_EQ(more.outcome.error().code, Errc::negative) << more.outcome.error().message;
+    EXPECT_EQ(more.outcome.error().code, Errc::negative) << more.outcome.error().message.text();
   }
   EXPECT_TRUE(more.begun);
   // Where nobody can watch it, it bounds what is asked and nothing else.
@@ -98,7 +99,7 @@ TEST_P(ValuesOfFamily, ASpeedBetweenTwoStepsIsToldOrRefused) {
   Motion motion(*bench.session, bench.profile(), 1, bench.options);
   ASSERT_TRUE(motion.prepare());
   const auto plan = plan_jog(motion, jog_for("61.5rpm", 1s));
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   if (plan->value == 61.5 || std::abs(plan->value - 61.5) < 0.07) return;
   ASSERT_FALSE(plan->notes.empty());
   EXPECT_NE(plan->notes.front().find("61.5 rpm is 62 rpm"), std::string::npos) << plan->notes.front();
@@ -123,14 +124,15 @@ TEST_P(ValuesOfFamily, HomingByNoMethodOrWithoutSpeedIsRefusedWithTheWayOut) {
   done = bench.home(home);
   expect_refused(done, "speed 0");
   const auto& why = done.outcome.error();
-  if (why.message.find("out of range: 1") != std::string::npos) return;  // The object itself holds no 0.
-  EXPECT_NE(why.message.find("homing would never end"), std::string::npos) << why.message;
-  EXPECT_NE(why.hint.find("--speed"), std::string::npos);
+  if (why.message.text().find("out of range: 1") != std::string::npos)
+    return;  // The object itself holds no 0.
+  EXPECT_NE(why.message.text().find("homing would never end"), std::string::npos) << why.message.text();
+  EXPECT_NE(why.hint.text().find("--speed"), std::string::npos);
 }
 
 TEST_P(ValuesOfFamily, ASpeedThatIsNotTheOneAskedForIsADifference) {
   const auto good = bench.jog(jog_for("60rpm", 2s));
-  ASSERT_TRUE(good.outcome) << good.outcome.error().message;
+  ASSERT_TRUE(good.outcome) << good.outcome.error().message.text();
   EXPECT_EQ(good.differences, std::vector<std::string>{});
   EXPECT_EQ(good.unchecked, std::vector<std::string>{});
   const auto shorter = bench.jog(jog_for("60rpm", 200ms));
@@ -160,7 +162,7 @@ class Measured : public testing::Test {
 TEST_F(Measured, AJogAtHalfItsSpeedIsDoneBut) {
   distort(*bench.bus, 0x606C, [](double v) { return v / 2; });
   const auto done = bench.jog(jog_for("60rpm", 2s));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   ASSERT_EQ(done.differences.size(), 1U);
   EXPECT_EQ(done.differences.front(), "the speed was 30 rpm; 60 rpm was commanded");
   EXPECT_FALSE(bench.energised());
@@ -168,12 +170,12 @@ TEST_F(Measured, AJogAtHalfItsSpeedIsDoneBut) {
 
 TEST_F(Measured, AMoveThatAWidePositionWindowCallsDoneIsDoneBut) {
   const auto done_well = bench.move(move_to("90deg", "60rpm"));
-  ASSERT_TRUE(done_well.outcome) << done_well.outcome.error().message;
+  ASSERT_TRUE(done_well.outcome) << done_well.outcome.error().message.text();
   EXPECT_EQ(done_well.differences, std::vector<std::string>{});
   ASSERT_TRUE(bench.session->download(1, {0x6067, 0}, store_le(131072, 4)));
   distort(*bench.bus, 0x6064, [](double v) { return v - 0.05 * 131072; });  // It is 18 degrees off.
   const auto done = bench.move(move_to("180deg", "60rpm"));
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   ASSERT_EQ(done.differences.size(), 1U);
   EXPECT_NE(done.differences.front().find("180 deg was commanded"), std::string::npos);
 }
@@ -183,9 +185,10 @@ TEST(SpeedLimit, OfTheDriveItselfIsRaisedByNoOption) {
   ASSERT_TRUE(bench.session->download(1, {0x607F, 0}, store_le(10000, 4)));  // 60 rpm of 10000 counts.
   const auto done = bench.jog(jog_for("100rpm", 1s));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("what the drive allows, 60 rpm"), std::string::npos)
-      << done.outcome.error().message;
-  EXPECT_EQ(done.outcome.error().hint.find("--limit"), std::string::npos) << done.outcome.error().hint;
+  EXPECT_NE(done.outcome.error().message.text().find("what the drive allows, 60 rpm"), std::string::npos)
+      << done.outcome.error().message.text();
+  EXPECT_EQ(done.outcome.error().hint.text().find("--limit"), std::string::npos)
+      << done.outcome.error().hint.text();
   EXPECT_FALSE(done.begun);
 }
 
@@ -198,7 +201,7 @@ TEST_F(Measured, ATorqueThatIsNotThereIsDoneBut) {
       store_le(std::uint64_t{5}, std::span(frame.data).subspan(4, 2));
   };
   const auto done = other.torque({.torque = "20%", .length = 1s});
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   const auto all = done.differences.size() + done.unchecked.size();
   EXPECT_GE(all, 1U);
 }
@@ -212,7 +215,7 @@ TEST_F(Measured, KeysThatNobodyHoldsForFiveSecondsEndTheJog) {
     return time > 3s && time < 5s ? HoldKey::plus : HoldKey::none;
   };
   const auto done = bench.jog(jog);
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   const auto took = bench.session->now() - begin;
   EXPECT_GT(took, 9s);
   EXPECT_LT(took, 13s);
@@ -227,7 +230,7 @@ TEST(TorqueSlope, ThatRoundsToNothingIsTheSmallestStepAndTold) {
   Motion motion(*bench.session, bench.profile(), 1, bench.options);
   ASSERT_TRUE(motion.prepare());
   const auto plan = plan_torque(motion, {.torque = "5%", .length = 500ms});
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   const auto slope = std::find_if(plan->settings.begin(), plan->settings.end(),
                                   [](const auto& s) { return s.first == objects::kTorqueSlope; });
   ASSERT_NE(slope, plan->settings.end());
@@ -250,7 +253,7 @@ TEST(SpeedLimitInTorqueMode, OfTheDriveIsSetInItsOwnUnit) {
   ASSERT_NE(limit, plan->settings.end());
   EXPECT_EQ(load_le(limit->second), 60U);
   const auto done = bench.torque({.torque = "5%", .length = 500ms});
-  ASSERT_TRUE(done.outcome) << done.outcome.error().message;
+  ASSERT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_EQ(bench.changed(), std::vector<std::string>{});
 }
 

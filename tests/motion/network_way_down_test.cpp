@@ -33,7 +33,7 @@ TEST_F(WayDown, TakesADriveDown) {
   std::vector<PowerDownPlan> plans(1);
   plans[0].node = 1;
   const auto done = motion::take_down(*session, std::move(plans)).front();
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_TRUE(done.is_without_power());
   EXPECT_EQ(objects.values[servoctl::objects::kControlword], (Bytes{0, 0}));
 }
@@ -43,7 +43,7 @@ TEST_F(WayDown, WakesADriveThatIsStoppedOnItsWayDown) {
   std::vector<PowerDownPlan> plans(1);
   plans[0].node = 1;
   const auto done = motion::take_down(*session, std::move(plans)).front();
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_EQ(node->state, NodeState::pre_operational);
   EXPECT_EQ(objects.values[servoctl::objects::kControlword], (Bytes{0, 0}));
 }

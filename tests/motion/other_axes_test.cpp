@@ -63,7 +63,7 @@ TEST_F(TwoAxes, OneThatIsEnergisedByOthersRefusesAMotion) {
 TEST_F(TwoAxes, AreBothInTheStateThatAMotionLeaves) {
   bench.started = [this] { word = 0x0237; };
   const auto done = bench.jog(jog_for("60rpm", std::chrono::seconds(1)));
-  ASSERT_TRUE(done.begun) << done.outcome.error().message;
+  ASSERT_TRUE(done.begun) << done.outcome.error().message.text();
   ASSERT_FALSE(done.end.left.empty());
   EXPECT_EQ(done.end.left.back(), "axis 2 (0x6841:0) is in operation enabled");
 }
@@ -107,7 +107,7 @@ TEST_F(TwoAxes, OneThatDoesNotObeyIsAnError) {
   auto others = other_axes(*bench.session, &bench.profile(), 1);
   const auto stopped = stop_axes(*bench.session, 1, others, true);
   ASSERT_FALSE(stopped);
-  EXPECT_EQ(stopped.error().message,
+  EXPECT_EQ(stopped.error().message.text(),
             "node 1: axis 2 (0x6841:0) is in operation enabled: it may be energised");
 }
 

@@ -21,7 +21,7 @@ TEST_P(PowerOfFamily, ReachesEveryStateFromEveryOther) {
       Power power(*bench.session, bench.profile(), 1);
       ASSERT_TRUE(power.reach(from)) << drive::name(from);
       const auto reached = power.reach(to);
-      ASSERT_TRUE(reached) << reached.error().message;
+      ASSERT_TRUE(reached) << reached.error().message.text();
       EXPECT_EQ(bench.drive().power_state(), to) << drive::name(from) << " -> " << drive::name(to);
     }
   }
@@ -56,7 +56,7 @@ std::optional<bool> had_power(MotionBench& bench, PowerAim aim) {
   plans.front().node = 1;
   plans.front().aim = aim;
   const auto done = std::move(take_down(*bench.session, std::move(plans)).front());
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   return done.had_power();
 }
 
@@ -124,13 +124,13 @@ TEST_F(Stubborn, ADriveThatObeysItsPanelIsToldAsSuch) {
   const auto done = enable("7000");  // 0x0070: voltage, but not remote.
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::negative);
-  EXPECT_NE(done.error().hint.find("remote"), std::string::npos) << done.error().hint;
+  EXPECT_NE(done.error().hint.text().find("remote"), std::string::npos) << done.error().hint.text();
 }
 
 TEST_F(Stubborn, ADriveWithoutSupplyIsToldAsSuch) {
   const auto done = enable("4002");  // 0x0240: remote, but no voltage.
   ASSERT_FALSE(done);
-  EXPECT_NE(done.error().hint.find("voltage"), std::string::npos) << done.error().hint;
+  EXPECT_NE(done.error().hint.text().find("voltage"), std::string::npos) << done.error().hint.text();
 }
 
 TEST_F(Stubborn, AStatuswordThatFitsNoStateIsNotCommandedOn) {
@@ -163,13 +163,14 @@ TEST_F(Stubborn, AQuickStopThatChangesNothingIsNoSuccess) {
   const auto done = quick_stop("3706");
   ASSERT_FALSE(done);
   EXPECT_EQ(done.error().code, Errc::negative);
-  EXPECT_NE(done.error().message.find("does not follow the quick stop"), std::string::npos);
+  EXPECT_NE(done.error().message.text().find("does not follow the quick stop"), std::string::npos);
 }
 
 TEST_F(Stubborn, AFaultReactionThatDoesNotEndIsNotDisabled) {
   const auto done = disable("0F02");
   ASSERT_FALSE(done);
-  EXPECT_NE(done.error().message.find("is still braking"), std::string::npos) << done.error().message;
+  EXPECT_NE(done.error().message.text().find("is still braking"), std::string::npos)
+      << done.error().message.text();
 }
 
 TEST(OperationMode, IsRefusedWhenTheDriveItselfDoesNotHaveIt) {

@@ -68,7 +68,7 @@ TEST(ProducerClaim, TwoThatStartAtOnceTakeDifferentNumbers) {
     TwoMasters two("gsd600", seeds);
     two.jog(jog_for("60rpm", 500ms));
     for (const auto& report : two.reports)
-      EXPECT_TRUE(report.outcome) << (report.outcome ? "" : report.outcome.error().message);
+      EXPECT_TRUE(report.outcome) << (report.outcome ? "" : report.outcome.error().message.text());
     EXPECT_NE(two.reports[0].watchdog.producer, two.reports[1].watchdog.producer);
   }
 }
@@ -94,7 +94,7 @@ TEST(ProducerClaim, TheDriveOfOneThatIsKilledStopsAlthoughTheOtherGoesOn) {
     };
     two.jog(jog_for("60rpm", 4s));
     EXPECT_TRUE(two.reports[1].outcome)
-        << family << ": " << (two.reports[1].outcome ? "" : two.reports[1].outcome.error().message);
+        << family << ": " << (two.reports[1].outcome ? "" : two.reports[1].outcome.error().message.text());
     EXPECT_TRUE(stopped) << family;
     EXPECT_LT(samples_until, 60) << family << ": a little more than half a second";
   }
@@ -121,7 +121,7 @@ TEST_F(MotionTrouble, ANumberThatIsContestedWhileItIsClaimedIsLeftToTheOther) {
     return false;
   };
   const auto done = bench.jog(jog_for("60rpm", 200ms));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_TRUE(contested);
   EXPECT_EQ(done.watchdog.producer, 126);
 }

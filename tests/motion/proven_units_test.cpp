@@ -38,8 +38,9 @@ TEST_F(ProvenUnits, AUnitThatNothingStatesConvertsNothing) {
   const auto refused = bench.jog(jog_for("60rpm", 1s));
   ASSERT_FALSE(refused.outcome);
   EXPECT_FALSE(refused.begun);
-  EXPECT_NE(refused.outcome.error().message.find("the unit of 0x60FF:0 is not known"), std::string::npos)
-      << refused.outcome.error().message;
+  EXPECT_NE(refused.outcome.error().message.text().find("the unit of 0x60FF:0 is not known"),
+            std::string::npos)
+      << refused.outcome.error().message.text();
   EXPECT_FALSE(speed_word("1000inc/s")) << "nor is the recommended unit taken for granted";
   bench.options.speed_limit = "100";
   EXPECT_EQ(speed_word("60").value(), 60U) << "plain numbers stay possible";

@@ -44,8 +44,10 @@ TEST_F(RemoteBit, NamesTheStateOperationalWhereTheNodeIsInAnother) {
       << item->text;
   const auto refused = check_preflight(items, 1);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().hint.find("`nmt start -n 1`"), std::string::npos) << refused.error().hint;
-  EXPECT_NE(refused.error().hint.find("--ignore-remote"), std::string::npos) << refused.error().hint;
+  EXPECT_NE(refused.error().hint.text().find("`nmt start -n 1`"), std::string::npos)
+      << refused.error().hint.text();
+  EXPECT_NE(refused.error().hint.text().find("--ignore-remote"), std::string::npos)
+      << refused.error().hint.text();
 }
 
 TEST_F(RemoteBit, IsSetOnceTheNodeIsStarted) {
@@ -74,7 +76,7 @@ TEST_F(RemoteBit, ThatIsIgnoredIsACaution) {
 TEST(RemoteBitOfAFamily, MayMeanNothing) {
   const auto rules =
       drive::parse_rules("format = 1\nfamily = \"mine\"\n[statusword]\nremote_bit = false\n", "mine.toml");
-  ASSERT_TRUE(rules) << rules.error().message;
+  ASSERT_TRUE(rules) << rules.error().message.text();
   drive::Profile profile;
   profile.rules = *rules;
   MotionBench bench("gsd600", 131072);

@@ -127,12 +127,13 @@ class RingFaults : public RingTrouble, public testing::WithParamInterface<RingFa
   template <class T>
   bool is_fine(const Result<T>& result, std::uint8_t node) {
     if (result) return true;
-    said_ += result.error().message + "\n";
-    EXPECT_TRUE(result.error().node == node || result.error().code == Errc::bus) << result.error().message;
+    said_ += result.error().message.text() + "\n";
+    EXPECT_TRUE(result.error().node == node || result.error().code == Errc::bus)
+        << result.error().message.text();
     return false;
   }
   void hear() {
-    for (const auto& notice : network().take_notices()) said_ += notice + "\n";
+    for (const auto& notice : network().take_notices()) said_ += notice.text() + "\n";
     for (const auto& event : session_->take_events())
       if (std::holds_alternative<canopen::Emergency>(event.what)) said_ += "emergency\n";
   }

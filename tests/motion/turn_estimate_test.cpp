@@ -36,7 +36,7 @@ TEST(TurnEstimate, FollowsAPositionOverTheEndOfItsRange) {
     if (look.position > 2147483647) look.position -= 4294967296.0;
   }
   const auto found = measure_turn(over, 0.1);
-  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found) << found.error().message.text();
   EXPECT_NEAR(found->increments, 8388608, 10);
 }
 
@@ -48,7 +48,7 @@ TEST(TurnEstimate, RefusesWhatIsNotExactEnough) {
   for (auto& look : quarrel) look.speed *= 1.03;
   const auto found = measure_turn(quarrel, 0.1);
   ASSERT_FALSE(found);
-  EXPECT_NE(found.error().message.find("reports two speeds"), std::string::npos);
+  EXPECT_NE(found.error().message.text().find("reports two speeds"), std::string::npos);
 }
 
 TEST(TurnEstimate, TakesWhatIsWithinOnePercent) {

@@ -20,8 +20,8 @@ TEST_F(MotionTrouble, ASecondNodeOfItsNumberStopsTheMotion) {
   };
   const auto done = bench.jog(kJog);
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("two nodes answer with this node-ID"), std::string::npos)
-      << done.outcome.error().message;
+  EXPECT_NE(done.outcome.error().message.text().find("two nodes answer with this node-ID"), std::string::npos)
+      << done.outcome.error().message.text();
   EXPECT_FALSE(done.end.verified) << "which of two is without power is not known";
   const auto text = end_text(done.end, done.watchdog);
   EXPECT_EQ(text.find("watchdog"), std::string::npos) << "it was taken back: " << text;
@@ -37,7 +37,7 @@ TEST_F(MotionTrouble, DoubledFramesNowAndThenStopNoMotion) {
     if (is_looked_at(frame) && ++seen % 10 == 0) bench.bus->injected.push_back(can::to_string(frame));
   };
   const auto done = bench.jog(jog_for("60rpm", std::chrono::milliseconds(500)));
-  EXPECT_TRUE(done.outcome) << done.outcome.error().message;
+  EXPECT_TRUE(done.outcome) << done.outcome.error().message.text();
   EXPECT_GT(seen, 20);
 }
 

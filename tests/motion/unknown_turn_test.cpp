@@ -22,8 +22,8 @@ Home home_at_own_speeds() {
 
 void expect_refused(const Result<MotionPlan>& plan, std::string_view why) {
   ASSERT_FALSE(plan);
-  EXPECT_NE(plan.error().message.find(why), std::string::npos)
-      << plan.error().message << " | " << plan.error().hint;
+  EXPECT_NE(plan.error().message.text().find(why), std::string::npos)
+      << plan.error().message.text() << " | " << plan.error().hint.text();
 }
 
 /// 6099h:01 is 1310720 inc/s from the factory: 600 rpm with 17 bits, 2400 rpm with 15.
@@ -31,8 +31,8 @@ TEST(UnknownTurn, IsJudgedByTheFewestCountsOfTheFamily) {
   MotionBench bench("gsd600");
   const auto plan = plan_of(bench, home_at_own_speeds(), plan_home);
   expect_refused(plan, "is above the limit of 163840 inc/s");
-  EXPECT_NE(plan.error().hint.find("at 32768 of them this speed is 2400 rpm"), std::string::npos)
-      << plan.error().hint;
+  EXPECT_NE(plan.error().hint.text().find("at 32768 of them this speed is 2400 rpm"), std::string::npos)
+      << plan.error().hint.text();
   bench.options.turn = 131072;
   expect_refused(plan_of(bench, home_at_own_speeds(), plan_home), "is above the limit of 300 rpm");
 }
@@ -55,7 +55,7 @@ TEST(UnknownTurn, AMoveTakesAPartOfTheSlowestThatMayBeMeant) {
   move.target = "1000inc";
   move.relative = true;
   const auto plan = plan_of(bench, move, plan_move);
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   EXPECT_LE(plan->speed, 163840 / 5.0 + 1);
 }
 
@@ -76,7 +76,7 @@ TEST(UnknownTurn, NeedsSpeedAndLimitWhereNothingTellsTheWorst) {
   expect_refused(plan_of(bench, move, plan_move), "no safe speed is known");
   bench.options.speed_limit = "100inc/s";
   const auto plan = plan_of(bench, move, plan_move);
-  EXPECT_TRUE(plan) << plan.error().message;
+  EXPECT_TRUE(plan) << plan.error().message.text();
 }
 
 /// The drive takes its method 35 where it stands.
@@ -92,7 +92,8 @@ TEST(TorqueCeiling, EndsAMotionWhoseMotorNeedsMoreToAccelerate) {
   bench.options.max_torque = "5%";
   const auto done = bench.jog(jog_for("240rpm", std::chrono::seconds(2)));
   ASSERT_FALSE(done.outcome);
-  EXPECT_NE(done.outcome.error().message.find("torque"), std::string::npos) << done.outcome.error().message;
+  EXPECT_NE(done.outcome.error().message.text().find("torque"), std::string::npos)
+      << done.outcome.error().message.text();
   EXPECT_TRUE(done.end.verified);
   bench.options.max_torque = "150%";
   EXPECT_TRUE(bench.jog(jog_for("240rpm", std::chrono::seconds(2))).outcome);

@@ -42,12 +42,12 @@ class Watchdog : public testing::Test {
  protected:
   WatchdogPlan plan(std::optional<std::uint8_t> producer = {}) {
     auto out = plan_watchdog(*bench.session, bench.profile(), 1, producer);
-    EXPECT_TRUE(out) << out.error().message;
+    EXPECT_TRUE(out) << out.error().message.text();
     return out.value_or(WatchdogPlan{});
   }
   void write(ObjectAddress object, std::uint32_t value, std::size_t size) {
     const auto done = bench.session->download(1, object, store_le(value, size));
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
   }
   /// Other masters are watched by every entry of 1016h.
   void take_all_entries() {

@@ -25,7 +25,7 @@ TEST_P(WayOutOfFamily, TheStopWordGoesToAllBeforeAnyAnswerIsWaitedFor) {
       EXPECT_EQ(all.bus->frames[i], "60" + std::to_string(i + 1) + "#2B406000" + word + "000000");
       EXPECT_EQ(times[i], all.begun);
     }
-    for (const auto& one : done) EXPECT_TRUE(one.outcome) << one.outcome.error().message;
+    for (const auto& one : done) EXPECT_TRUE(one.outcome) << one.outcome.error().message.text();
     if (aim != PowerAim::stop)
       for (const auto node : all.nodes) {
         EXPECT_EQ(all.drive(node).power_state(), DriveState::switch_on_disabled);

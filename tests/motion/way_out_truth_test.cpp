@@ -70,7 +70,7 @@ TEST_P(WayOutInTrouble, ANodeThatAnotherMasterHasStoppedIsWokenUpToBeDisabled) {
   };
   const auto done = bench.jog(jog_for("60rpm", 3s));
   ASSERT_FALSE(done.outcome);
-  EXPECT_TRUE(done.end.verified) << done.outcome.error().message;
+  EXPECT_TRUE(done.end.verified) << done.outcome.error().message.text();
   EXPECT_FALSE(bench.energised());
   EXPECT_EQ(load_le(bench.drive().value(objects::kControlword)), 0U);
 }
@@ -120,9 +120,10 @@ TEST_P(WayOutInTrouble, AQuickStopThatIsAcknowledgedAndNotTakenIsNoEnd) {
     const auto done = one.take_down(PowerAim::stop).front();
     EXPECT_EQ(done.outcome.has_value(), !feigns);
     if (feigns) {
-      EXPECT_NE(done.outcome.error().message.find("6040h did not accept 0002h (the write was acknowledged"),
-                std::string::npos)
-          << done.outcome.error().message;
+      EXPECT_NE(
+          done.outcome.error().message.text().find("6040h did not accept 0002h (the write was acknowledged"),
+          std::string::npos)
+          << done.outcome.error().message.text();
     }
   }
 }
@@ -189,7 +190,7 @@ TEST_P(WayOutInTrouble, MemoryThatRunsOutInMidMotionEndsItAndTheEndIsTold) {
   const auto done = bench.jog(jog_for("60rpm", 3s));
   ASSERT_FALSE(done.outcome);
   EXPECT_EQ(done.outcome.error().code, Errc::bug);
-  EXPECT_NE(done.outcome.error().message.find("out of memory"), std::string::npos);
+  EXPECT_NE(done.outcome.error().message.text().find("out of memory"), std::string::npos);
   EXPECT_TRUE(done.end.verified);
   EXPECT_FALSE(bench.energised());
   EXPECT_EQ(bench.changed(), std::vector<std::string>{});

@@ -44,8 +44,8 @@ DcfSettings settings() {
 
 std::string refusal(const std::string& text) {
   const auto dcf = read_dcf(text, "x.dcf");
-  if (!dcf) return dcf.error().message;
-  return dcf->unusable.empty() ? std::string("taken") : dcf->unusable.front().message;
+  if (!dcf) return dcf.error().message.text();
+  return dcf->unusable.empty() ? std::string("taken") : dcf->unusable.front().message.text();
 }
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {

@@ -28,7 +28,7 @@ TEST(EdsBounds, RefuseAFileAboveTheLimitUnread) {
   const auto file = read_in_time(std::string(kMostEdsBytes + 1, 'x'));
   ASSERT_FALSE(file);
   EXPECT_EQ(file.error().code, Errc::file);
-  EXPECT_EQ(file.error().message, "x.eds: 32 MiB is too large for an EDS");
+  EXPECT_EQ(file.error().message.text(), "x.eds: 32 MiB is too large for an EDS");
 }
 
 TEST(EdsBounds, ReadAFileAtTheLimit) {
@@ -43,7 +43,7 @@ TEST(EdsBounds, RefuseBytesThatAreNoText) {
   for (auto& c : text) c = static_cast<char>(random());
   const auto file = read_in_time(text);
   ASSERT_FALSE(file);
-  EXPECT_EQ(file.error().message, "x.eds: not a text file");
+  EXPECT_EQ(file.error().message.text(), "x.eds: not a text file");
 }
 
 TEST(EdsBounds, HoldForOneLongLine) {

@@ -155,8 +155,8 @@ TEST(EdsText, TellsLinesThatAreNothing) {
 TEST(EdsText, WithoutAUsableObjectIsRefusedWithTheFirstFinding) {
   const auto file = read_eds("[2000]\nParameterName=X\n", "x.eds");
   ASSERT_FALSE(file);
-  EXPECT_EQ(file.error().hint, "x.eds:1:1: error: [2000] has no DataType [missing-data-type]");
-  EXPECT_EQ(read_eds("", "x.eds").error().hint, "is it an EDS or DCF file (CiA 306)?");
+  EXPECT_EQ(file.error().hint.text(), "x.eds:1:1: error: [2000] has no DataType [missing-data-type]");
+  EXPECT_EQ(read_eds("", "x.eds").error().hint.text(), "is it an EDS or DCF file (CiA 306)?");
 }
 
 TEST(Diagnostic, OfAWarningSaysSo) {

@@ -13,7 +13,7 @@ namespace servoctl::od {
 /// The file; a failure of the test when it is refused.
 inline EdsFile read_sheet(std::string_view text) {
   auto file = read_eds(text, "x.eds");
-  EXPECT_TRUE(file) << (file ? "" : file.error().message);
+  EXPECT_TRUE(file) << (file ? "" : file.error().message.text());
   return file.value_or(EdsFile{});
 }
 

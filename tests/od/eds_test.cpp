@@ -179,7 +179,7 @@ TEST(Eds, WithoutAnyObjectIsRefused) {
     const auto file = read_eds(text, "x.eds");
     ASSERT_FALSE(file) << text;
     EXPECT_EQ(file.error().code, Errc::file);
-    EXPECT_EQ(file.error().message, "x.eds: there is no usable object in this file");
+    EXPECT_EQ(file.error().message.text(), "x.eds: there is no usable object in this file");
   }
 }
 
@@ -188,8 +188,8 @@ TEST(Eds, InXmlIsNamedAsThat) {
        {"\xEF\xBB\xBF<?xml version=\"1.0\"?>\n<ISO15745ProfileContainer/>\n", "\n <Device/>"}) {
     const auto file = read_eds(text, "x.xdd");
     ASSERT_FALSE(file) << text;
-    EXPECT_EQ(file.error().message, "x.xdd: this is XML, not an EDS or DCF file");
-    EXPECT_NE(file.error().hint.find("CiA 311"), std::string::npos);
+    EXPECT_EQ(file.error().message.text(), "x.xdd: this is XML, not an EDS or DCF file");
+    EXPECT_NE(file.error().hint.text().find("CiA 311"), std::string::npos);
   }
 }
 

@@ -30,23 +30,25 @@ TEST(EsiForeign, WhatIsNotWellFormedIsToldWithLineAndColumn) {
       refused("<?xml version=\"1.0\"?>\n<EtherCATInfo>\n  <Vendor><Id>1</Vendor>\n</EtherCATInfo>\n");
   EXPECT_EQ(error.code, Errc::file);
   EXPECT_EQ(error.line, 3U);
-  EXPECT_TRUE(error.message.starts_with("p20.xml:3:")) << error.message;
-  EXPECT_NE(error.message.find("an end tag is missing or is not that of its element"), std::string::npos)
-      << error.message;
+  EXPECT_TRUE(error.message.text().starts_with("p20.xml:3:")) << error.message.text();
+  EXPECT_NE(error.message.text().find("an end tag is missing or is not that of its element"),
+            std::string::npos)
+      << error.message.text();
 }
 
 TEST(EsiForeign, AFileThatEndsInTheMiddleSaysSo) {
   const auto whole = esi_objects(esi_object("#x2000", "UINT"));
   const auto error = refused(std::string_view(whole).substr(0, whole.find("<Flags>") + 7));
-  EXPECT_NE(error.message.find("the file ends in the middle"), std::string::npos) << error.message;
+  EXPECT_NE(error.message.text().find("the file ends in the middle"), std::string::npos)
+      << error.message.text();
   for (std::size_t end = 0; end + 2 < whole.size(); ++end)
     EXPECT_FALSE(read_esi(whole.substr(0, end), "p20.xml")) << end;
 }
 
 TEST(EsiForeign, OtherXmlIsCalledWhatItIs) {
   EXPECT_EQ(refused("<EtherCATConfig/>").message, "p20.xml: <EtherCATConfig> is not an ESI");
-  EXPECT_NE(refused("<EtherCATConfig/>").hint.find("ENI"), std::string::npos);
-  EXPECT_NE(refused("<ISO15745ProfileContainer/>").hint.find("XDD"), std::string::npos);
+  EXPECT_NE(refused("<EtherCATConfig/>").hint.text().find("ENI"), std::string::npos);
+  EXPECT_NE(refused("<ISO15745ProfileContainer/>").hint.text().find("XDD"), std::string::npos);
   EXPECT_EQ(refused("[2000]\nDataType=5\n").message, "p20.xml: this is not XML");
   EXPECT_EQ(refused("").message, "p20.xml: this is not XML");
   EXPECT_EQ(refused(std::string(64, '\x01')).message, "p20.xml: not a text file");
@@ -66,7 +68,8 @@ TEST(EsiForeign, EntitiesOfTheFileAreNotReplaced) {
 TEST(EsiForeign, MoreTagsThanAnyDeviceHasAreRefusedUnread) {
   std::string text = "<EtherCATInfo>";
   for (int i = 0; i < 4'000'001; ++i) text += "<a/>";
-  EXPECT_NE(refused(text).message.find("tags are more than any device description has"), std::string::npos);
+  EXPECT_NE(refused(text).message.text().find("tags are more than any device description has"),
+            std::string::npos);
   EXPECT_EQ(refused(std::string(kMostEsiBytes + 1, ' ')).message, "p20.xml: 64 MiB is too large for an ESI");
 }
 

@@ -35,7 +35,7 @@ inline std::string esi_object(std::string_view index, std::string_view type, std
 
 inline EsiFile read_good(std::string_view text, std::string_view device = {}) {
   auto file = read_esi(text, "p20.xml", device);
-  EXPECT_TRUE(file) << (file ? "" : file.error().message);
+  EXPECT_TRUE(file) << (file ? "" : file.error().message.text());
   return file ? std::move(*file) : EsiFile{};
 }
 

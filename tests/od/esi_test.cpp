@@ -138,11 +138,11 @@ TEST(Esi, OfSeveralDevicesOneIsNamedByNumberNameOrIdentity) {
   const auto unclear = read_esi(*text, "cells.xml", "#x3000");
   ASSERT_FALSE(unclear);
   EXPECT_EQ(unclear.error().code, Errc::usage);
-  EXPECT_EQ(unclear.error().message, "cells.xml has 2 devices '#x3000'");
+  EXPECT_EQ(unclear.error().message.text(), "cells.xml has 2 devices '#x3000'");
   const auto none = read_esi(*text, "cells.xml");
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().message, "cells.xml describes 2 devices: which one?");
-  EXPECT_NE(none.error().hint.find("#2 Load cell 2 (product code 0x00003000, revision 0x00000002)"),
+  EXPECT_EQ(none.error().message.text(), "cells.xml describes 2 devices: which one?");
+  EXPECT_NE(none.error().hint.text().find("#2 Load cell 2 (product code 0x00003000, revision 0x00000002)"),
             std::string::npos);
   EXPECT_FALSE(read_esi(*text, "cells.xml", "3"));
 }

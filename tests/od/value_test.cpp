@@ -14,7 +14,7 @@ constexpr DataType kIntegers[] = {
 
 Bytes bytes_of(DataType type, std::string_view text) {
   const auto value = parse_value(type, text);
-  EXPECT_TRUE(value) << text << ": " << (value ? "" : value.error().message);
+  EXPECT_TRUE(value) << text << ": " << (value ? "" : value.error().message.text());
   return value ? encode(type, *value).value_or(Bytes{}) : Bytes{};
 }
 
@@ -22,7 +22,7 @@ void expect_refused(DataType type, std::string_view text, std::string_view messa
   const auto value = parse_value(type, text);
   ASSERT_FALSE(value) << text;
   EXPECT_EQ(value.error().code, Errc::usage);
-  EXPECT_EQ(value.error().message, message);
+  EXPECT_EQ(value.error().message.text(), message);
 }
 
 TEST(Value, IsEncodedLittleEndian) {
@@ -67,7 +67,7 @@ TEST(Value, OfTheWrongLengthIsRefused) {
   const auto value = decode(DataType::u16, three);
   ASSERT_FALSE(value);
   EXPECT_EQ(value.error().code, Errc::protocol);
-  EXPECT_EQ(value.error().message, "3 bytes received, u16 has 2");
+  EXPECT_EQ(value.error().message.text(), "3 bytes received, u16 has 2");
 }
 
 TEST(Value, OfAStringLosesTrailingNulsOnly) {

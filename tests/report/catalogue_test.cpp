@@ -175,5 +175,22 @@ TEST(ChineseValue, TranslatesHeadingsAndCellsButNoOwnWords) {
   EXPECT_EQ(to_text(chinese_value(Value(Record{{"energised", true}}))).find("yes"), std::string::npos);
 }
 
+TEST(ChineseMessages, CodesAreHexadecimalAsInEnglish) {
+  auto refused = message("refused: {} (abort 0x{:08X})", "object does not exist in the object dictionary",
+                         std::uint32_t{0x06020000});
+  put_into_chinese(refused);
+  EXPECT_NE(refused.text().find("0x06020000"), std::string::npos) << refused.text();
+  EXPECT_EQ(refused.text().find("refused"), std::string::npos) << refused.text();
+}
+
+TEST(ChineseMessages, HaveNoPlural) {
+  for (const auto* const ending : {"", "s"}) {
+    auto said = message("{}: {} error{}", as_it_is("x.eds"), 2, ending);
+    put_into_chinese(said);
+    EXPECT_EQ(said.text().find("error"), std::string::npos) << said.text();
+    EXPECT_FALSE(said.text().ends_with('s')) << said.text();
+  }
+}
+
 }  // namespace
 }  // namespace servoctl::report

@@ -7,7 +7,7 @@ namespace {
 
 std::string refusal_of(std::string_view text) {
   const auto read = parse_po(text, "x.po");
-  return read ? "read" : read.error().message;
+  return read ? "read" : read.error().message.text();
 }
 
 TEST(Po, ReadsMessagesRemarksAndContinuationLines) {
@@ -15,7 +15,7 @@ TEST(Po, ReadsMessagesRemarksAndContinuationLines) {
       "msgid \"\"\nmsgstr \"Content-Type: text/plain\\n\"\n\n#. made of: pieces\n#: commands/a.cpp\n"
       "msgid \"one\\n\"\n\"two \\\"3\\\" \\\\\"\nmsgstr \"一\\t\"\n\nmsgid \"b\"\nmsgstr \"\"\n",
       "x.po");
-  ASSERT_TRUE(read) << read.error().message;
+  ASSERT_TRUE(read) << read.error().message.text();
   ASSERT_EQ(read->size(), 2U);
   EXPECT_EQ((*read)[0].id, "one\ntwo \"3\" \\");
   EXPECT_EQ((*read)[0].text, "一\t");

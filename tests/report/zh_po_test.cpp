@@ -26,7 +26,7 @@ std::vector<std::string> samples_of(const Phrase& phrase) {
 
 TEST(ZhPo, IsReadAsAWhole) {
   const auto entries = parse_po(zh_po(), "zh.po");
-  ASSERT_TRUE(entries) << entries.error().message;
+  ASSERT_TRUE(entries) << entries.error().message.text();
   EXPECT_GT(entries->size(), 2000U);
 }
 

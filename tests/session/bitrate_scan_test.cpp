@@ -61,7 +61,7 @@ struct Scanned {
 TEST(BitrateScan, LeavesTheInterfaceWhereNodesAnswered) {
   Scanned scanned(250'000);
   const auto done = scanned.run({500'000, 250'000, 125'000});
-  ASSERT_TRUE(done.has_value()) << done.error().message;
+  ASSERT_TRUE(done.has_value()) << done.error().message.text();
   EXPECT_EQ(done->bitrate, 250'000U);
   ASSERT_EQ(done->found.size(), 1U);
   EXPECT_EQ(done->found[0].node, 3);
@@ -108,7 +108,7 @@ TEST(BitrateScan, IsRefusedWhereSomebodyTalks) {
   link.on_wire[500'000] = {heartbeat};
   const auto used = hold_silence(link, std::chrono::seconds(1), {});
   EXPECT_EQ(used.error().code, Errc::refused);
-  EXPECT_EQ(used.error().message, "can0 is in use: 1 frame was heard at 500 kbit/s");
+  EXPECT_EQ(used.error().message.text(), "can0 is in use: 1 frame was heard at 500 kbit/s");
   can::Frame stuff;
   stuff.error = true;
   stuff.id = 0x088;
@@ -117,7 +117,7 @@ TEST(BitrateScan, IsRefusedWhereSomebodyTalks) {
   link.on_wire[500'000] = {stuff};
   const auto noise = hold_silence(link, std::chrono::seconds(1), {});
   EXPECT_EQ(noise.error().code, Errc::refused);
-  EXPECT_NE(noise.error().hint.find("bus detect can0"), std::string::npos);
+  EXPECT_NE(noise.error().hint.text().find("bus detect can0"), std::string::npos);
 }
 
 }  // namespace

@@ -83,18 +83,18 @@ TEST(BitrateSearch, GoesOnBehindABitrateThatTheControllerCannotHave) {
 TEST(BitrateSearch, RefusesAnInterfaceThatCannotOnlyListen) {
   FakeLink deaf(controller(true));
   deaf.now.can_listen_only = false;
-  EXPECT_EQ(search_bitrate(deaf, at({500'000})).error().message,
+  EXPECT_EQ(search_bitrate(deaf, at({500'000})).error().message.text(),
             "the driver of can0 cannot listen without acknowledging");
   EXPECT_TRUE(deaf.done.empty());
   FakeLink old(controller(true));  // An older kernel does not tell, and refuses.
   old.refuses = [](const can::LinkChange& change) { return change.listen_only == true ? EOPNOTSUPP : 0; };
-  EXPECT_EQ(search_bitrate(old, at({500'000, 250'000})).error().message,
+  EXPECT_EQ(search_bitrate(old, at({500'000, 250'000})).error().message.text(),
             "the driver of can0 cannot listen without acknowledging");
   EXPECT_TRUE(old.listened.empty());
   EXPECT_TRUE(old.now.up);
   FakeLink none(controller(true));
   none.now.kind = "vcan";
-  EXPECT_EQ(search_bitrate(none, at({500'000})).error().message, "can0 (vcan) has no bitrate to set");
+  EXPECT_EQ(search_bitrate(none, at({500'000})).error().message.text(), "can0 (vcan) has no bitrate to set");
 }
 
 TEST(BitrateSearch, PutsTheInterfaceBackWhenItIsCancelled) {
@@ -113,8 +113,8 @@ TEST(BitrateSearch, SaysWhenTheInterfaceCouldNotBePutBack) {
   link.refuses = [](const can::LinkChange& change) { return change.bitrate == 1'000'000U ? EIO : 0; };
   const auto search = search_bitrate(link, at({250'000}));
   ASSERT_FALSE(search.has_value());
-  EXPECT_NE(search.error().message.find("could not be put back"), std::string::npos)
-      << search.error().message;
+  EXPECT_NE(search.error().message.text().find("could not be put back"), std::string::npos)
+      << search.error().message.text();
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST_F(BusReturnTest, EndsWithTheLossWhereItIsNotBackInTime) {
   BusReturn bus(*session, BusReturn::to_people(*session));
   const auto ended = lose_and_wait(bus, 10s);
   ASSERT_FALSE(ended);
-  EXPECT_EQ(ended.error().message, "can0 went down");
+  EXPECT_EQ(ended.error().message.text(), "can0 went down");
   EXPECT_EQ(session->now(), TimePoint(12s));
   EXPECT_EQ(told.size(), 1U);
   EXPECT_FALSE(session->was_away());
@@ -131,7 +131,7 @@ TEST_F(BusReturnTest, IsRefusedWhereAnotherDriveIsThereNow) {
   const auto back = lose_and_wait(bus, 10s);
   ASSERT_FALSE(back);
   EXPECT_EQ(back.error().code, Errc::refused);
-  EXPECT_EQ(back.error().message,
+  EXPECT_EQ(back.error().message.text(),
             "node 1: another drive is there than before the bus was lost: its vendor (1018h:01) is another");
   EXPECT_EQ(back.error().node, 1);
 }
@@ -185,7 +185,7 @@ TEST_F(BusReturnTest, ErrorsOnTheWireAreTheReasonOfASilenceAndNoMessages) {
   const auto answer = session->upload(8, {0x1000, 0});
   ASSERT_FALSE(answer);
   EXPECT_EQ(
-      answer.error().hint,
+      answer.error().hint.text(),
       "there were errors on the wire (4 × form error): another bitrate, wiring or termination? `doctor can0` tells them "
       "apart");
   EXPECT_EQ(session->take_events().size(), 0U);
@@ -197,14 +197,14 @@ TEST_F(BusReturnTest, ErrorsThatAreLongOverAreNotTheReasonOfASilence) {
   (void)session->wait([] { return false; }, session->now() + 10s);
   const auto answer = session->upload(8, {0x1000, 0});
   ASSERT_FALSE(answer);
-  EXPECT_TRUE(answer.error().hint.starts_with("is node 8 powered")) << answer.error().hint;
+  EXPECT_TRUE(answer.error().hint.text().starts_with("is node 8 powered")) << answer.error().hint.text();
 }
 
 TEST_F(BusReturnTest, OneErrorOnTheWireIsAnAccident) {
   wire->arrive(form_error(), 10ms);
   const auto answer = session->upload(8, {0x1000, 0});
   ASSERT_FALSE(answer);
-  EXPECT_TRUE(answer.error().hint.starts_with("is node 8 powered")) << answer.error().hint;
+  EXPECT_TRUE(answer.error().hint.text().starts_with("is node 8 powered")) << answer.error().hint.text();
 }
 
 TEST_F(BusReturnTest, ASecondNodeIsWaitedForAsLongAsItTakes) {

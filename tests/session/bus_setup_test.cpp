@@ -15,9 +15,9 @@ using Lines = std::vector<std::string>;
 Lines bring_up(FakeLink& link, const BusWish& wish) {
   const auto before = link.now;
   const auto plan = plan_bus_up("can0", before, wish);
-  if (!plan) return {plan.error().message};
+  if (!plan) return {plan.error().message.text()};
   const auto done = set_up(link, before, *plan);
-  if (!done) link.done.push_back(done.error().message);
+  if (!done) link.done.push_back(done.error().message.text());
   return link.done;
 }
 

@@ -60,7 +60,7 @@ TEST_F(CanNetworkTest, ABusOffNamesACommandOnlyWhereItHelps) {
     CanNetwork network(std::move(owned), url);
     wire->arrive("20000040#0000000000000000", 1ms);
     const auto stepped = network.step(network.now() + 10ms);
-    return stepped ? std::string("none") : stepped.error().hint;
+    return stepped ? std::string("none") : stepped.error().hint.text();
   };
   EXPECT_NE(hint_on("socketcan:can9").find("`bus up can9`"), std::string::npos);
   EXPECT_EQ(hint_on("slcan:/dev/ttyACM0@500k").find("bus up"), std::string::npos);

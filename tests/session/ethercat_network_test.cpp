@@ -75,7 +75,8 @@ TEST_F(EtherCatTest, APlaceWithoutASlaveIsTold) {
   const auto answer = session_->upload(3, objects::kVendorId);
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, Errc::timeout);
-  EXPECT_EQ(answer.error().message, "node 3: there is no slave at this position: 2 are on the ring");
+  EXPECT_EQ(answer.error().message.text(),
+            "node 3: there is no slave at this position (slaves on the ring: 2)");
 }
 
 TEST_F(EtherCatTest, WritesAndAbortsAreTheDrives) {
@@ -95,7 +96,8 @@ TEST_F(EtherCatTest, ARingWithAnotherMasterIsNotTouched) {
   const auto answer = other->upload(1, objects::kVendorId);
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, Errc::refused);
-  EXPECT_EQ(answer.error().message, "node 1: another master works with this ring: node 2 is in SAFE-OP");
+  EXPECT_EQ(answer.error().message.text(),
+            "node 1: another master works with this ring: node 2 is in SAFE-OP");
   EXPECT_EQ(other->network().ethercat()->look(true).value().size(), 2U);
   other->network().ethercat()->take_over(2);
   EXPECT_TRUE(other->network().request_state(2, NodeState::pre_operational));
@@ -110,7 +112,7 @@ TEST_F(EtherCatTest, ASlaveGoesToOpAndBack) {
   open("sv2@1");
   network().learn(1, rules());
   const auto up = network().request_state(1, NodeState::operational);
-  ASSERT_TRUE(up) << up.error().message;
+  ASSERT_TRUE(up) << up.error().message.text();
   EXPECT_EQ(slave().state(), sim::EscState::op);
   EXPECT_TRUE(network().must_go_on());
   pass(milliseconds(500));
@@ -197,7 +199,7 @@ TEST_F(EtherCatTest, ADriveWithAClockOf32BitsIsRunWithSync0) {
   ASSERT_TRUE(session_->upload(1, objects::kVendorId));
   ASSERT_TRUE(slave().registers().write(0x0920, store_le(0xFFFF'FFFFU, 8)));
   const auto up = network().request_state(1, NodeState::operational);
-  ASSERT_TRUE(up) << up.error().message;
+  ASSERT_TRUE(up) << up.error().message.text();
   pass(std::chrono::seconds(10));
   EXPECT_EQ(slave().state(), sim::EscState::op);
 }
@@ -215,8 +217,8 @@ TEST_F(EtherCatTest, AWrongWorkingCounterIsNamed) {
   const auto begun = session_->now();
   const auto read = session_->upload(1, objects::kStatusword);
   ASSERT_FALSE(read);
-  EXPECT_NE(read.error().message.find("working counter 2 instead of 3"), std::string::npos)
-      << read.error().message;
+  EXPECT_NE(read.error().message.text().find("working counter 2 instead of 3"), std::string::npos)
+      << read.error().message.text();
   EXPECT_LT(session_->now() - begun, milliseconds(100)) << "nothing more is to be expected";
   EXPECT_FALSE(session_->download(1, objects::kTargetVelocity, store_le(0U, 4)));
 }
@@ -266,10 +268,10 @@ TEST_F(EtherCatTest, ASlaveInBootIsToldAndInitTakesItOutOfIt) {
   const auto refused = session_->upload(1, objects::kVendorId);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::negative);
-  EXPECT_EQ(refused.error().message, "node 1: it is in BOOT and takes firmware only");
-  EXPECT_EQ(refused.error().hint, "`state init -n 1`");
+  EXPECT_EQ(refused.error().message.text(), "node 1: it is in BOOT and takes firmware only");
+  EXPECT_EQ(refused.error().hint.text(), "`state init -n 1`");
   const auto out = network().request_state(1, NodeState::initialising);
-  ASSERT_TRUE(out) << out.error().message;
+  ASSERT_TRUE(out) << out.error().message.text();
   EXPECT_EQ(slave().state(), sim::EscState::init);
   EXPECT_TRUE(session_->upload(1, objects::kVendorId));
 }
@@ -325,12 +327,12 @@ TEST_F(EtherCatTest, ADriveThatRefusesFreeRunIsRunWithSync0) {
   network().learn(1, rules());
   slave().faults().refuses_free_run = true;
   const auto up = network().request_state(1, NodeState::operational);
-  ASSERT_TRUE(up) << up.error().message;
+  ASSERT_TRUE(up) << up.error().message.text();
   EXPECT_EQ(slave().state(), sim::EscState::op);
   const auto notices = network().take_notices();
   ASSERT_EQ(notices.size(), 1U);
-  EXPECT_NE(notices.front().find("SYNC0"), std::string::npos) << notices.front();
-  EXPECT_NE(notices.front().find("0027h"), std::string::npos) << notices.front();
+  EXPECT_NE(notices.front().text().find("SYNC0"), std::string::npos) << notices.front().text();
+  EXPECT_NE(notices.front().text().find("0027h"), std::string::npos) << notices.front().text();
   pass(milliseconds(500));
   EXPECT_EQ(slave().state(), sim::EscState::op);
   ASSERT_TRUE(network().request_state(1, NodeState::pre_operational));
@@ -365,7 +367,7 @@ TEST_F(EtherCatTest, ASlaveThatTakesAnothersPlaceIsNotTakenForIt) {
   pass(milliseconds(400));
   const auto answer = session_->upload(1, objects::kVendorId);
   ASSERT_FALSE(answer);
-  EXPECT_EQ(answer.error().message, "coe:sim: the ring has changed since its slaves were numbered");
+  EXPECT_EQ(answer.error().message.text(), "coe:sim: the ring has changed since its slaves were numbered");
   EXPECT_FALSE(network().look(false)) << "nobody has asked for new numbers";
   EXPECT_FALSE(session_->upload(1, objects::kVendorId));
   ASSERT_TRUE(network().look(true));
@@ -378,7 +380,7 @@ TEST_F(EtherCatTest, TwoSlavesAreInOpAtTheSameTime) {
   network().learn(2, rules());
   ASSERT_TRUE(network().request_state(1, NodeState::operational));
   const auto second = network().request_state(2, NodeState::operational);
-  ASSERT_TRUE(second) << second.error().message;
+  ASSERT_TRUE(second) << second.error().message.text();
   pass(milliseconds(300));
   EXPECT_EQ(slave(0).state(), sim::EscState::op);
   EXPECT_EQ(slave(1).state(), sim::EscState::op);

@@ -46,7 +46,7 @@ class EtherCatTest : public testing::Test {
   void open(const std::string& spec) {
     const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     auto cell = sim::build_esc_cell(spec, folders, sim::SimClock(sim::SimClock::Kind::virtual_time).now());
-    ASSERT_TRUE(cell) << cell.error().message;
+    ASSERT_TRUE(cell) << cell.error().message.text();
     port_ =
         std::make_unique<sim::SimPort>(std::move(*cell), sim::SimClock(sim::SimClock::Kind::virtual_time));
     session_ = connect();

@@ -39,7 +39,7 @@ TEST(GatewayRoom, SixteenIdleClientsKeepNobodyOut) {
   gateway::Address address;
   address.path = path;
   auto listener = gateway::Listener::open(address);
-  ASSERT_TRUE(listener) << listener.error().message;
+  ASSERT_TRUE(listener) << listener.error().message.text();
   const std::vector<std::filesystem::path> folders{std::filesystem::path(source_dir()) / "eds"};
   auto bus = sim::open_sim("gsd600@1", folders, sim::SimBus::Clock::real_time);
   ASSERT_TRUE(bus);

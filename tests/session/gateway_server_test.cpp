@@ -20,7 +20,7 @@ class GatewayServing : public testing::Test {
  protected:
   void open(std::string_view spec, bool writes, Options network = {}) {
     auto bus = sim::open_sim(spec, kGatewayFolders, sim::SimBus::Clock::virtual_time);
-    ASSERT_TRUE(bus) << bus.error().message;
+    ASSERT_TRUE(bus) << bus.error().message.text();
     session.emplace(std::move(*bus), "test", std::move(network));
     ASSERT_TRUE(session->listen());
     server.emplace(

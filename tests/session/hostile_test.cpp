@@ -105,7 +105,7 @@ TEST_F(HostileBus, EndsASegmentedTransferWhenAnotherMasterSpeaksToTheNode) {
   const auto answer = session->upload(2, {0x1008, 0});
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, Errc::protocol);
-  EXPECT_EQ(answer.error().message,
+  EXPECT_EQ(answer.error().message.text(),
             "node 2, object 0x1008:0: another master uses its SDO channel at the same time");
   EXPECT_LT(session->now() - before, 10ms);
   EXPECT_EQ(bus->sent.size(), 2U) << "an abort would end the other master's transfer";
@@ -117,7 +117,7 @@ TEST_F(HostileBus, HintsAtAnotherMasterWhenItsTransferFails) {
   };
   const auto answer = read_status();
   EXPECT_EQ(answer.error().code, Errc::timeout);
-  EXPECT_EQ(answer.error().hint, "another master is also using SDO with this node");
+  EXPECT_EQ(answer.error().hint.text(), "another master is also using SDO with this node");
 }
 
 TEST_F(HostileBus, EndsAtOnceWhenTheControllerGoesBusOff) {
@@ -128,7 +128,8 @@ TEST_F(HostileBus, EndsAtOnceWhenTheControllerGoesBusOff) {
   const auto answer = read_status();
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().code, Errc::bus);
-  EXPECT_EQ(answer.error().message, "can0: bus-off: the controller has left the bus after too many errors");
+  EXPECT_EQ(answer.error().message.text(),
+            "can0: bus-off: the controller has left the bus after too many errors");
   EXPECT_LT(session->now() - before, 10ms);
 }
 
@@ -164,7 +165,7 @@ TEST_F(HostileBus, LooksUpAWriteInWhichTheNodeBooted) {
   const auto written = write_all(*session, std::span(&request, 1), false);
   ASSERT_FALSE(written.front());
   EXPECT_EQ(
-      written.front().error().message,
+      written.front().error().message.text(),
       "node 2, object 0x6060:0: the write was sent, but no answer came, and it had no effect: the object "
       "holds 01");
   EXPECT_EQ(std::count(bus->sent.begin(), bus->sent.end(), "602#2F60600003000000"), 1);

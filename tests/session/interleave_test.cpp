@@ -52,7 +52,7 @@ class MishapBus final : public can::Bus {
 
 std::unique_ptr<Session> cabinet_of(std::string_view spec, const Mishap& mishap = {}) {
   auto bus = sim::open_sim(spec, kInterleaveFolders, sim::SimBus::Clock::virtual_time);
-  EXPECT_TRUE(bus) << bus.error().message;
+  EXPECT_TRUE(bus) << bus.error().message.text();
   auto out =
       std::make_unique<Session>(std::make_unique<MishapBus>(std::move(*bus), mishap), "sim:", Options{});
   (void)out->listen();
@@ -92,7 +92,7 @@ TEST(Interleave, SnapshotsOfEightDrivesTakeAsLongAsOfOne) {
     jobs.emplace_back([&, node] { read[node - 1U] = settings_of_one(*session, node); });
   const auto together = lasts(*session, [&] { run_side_by_side(*session, jobs); });
   for (std::uint8_t node = 1; node <= 8; ++node) {
-    ASSERT_TRUE(read[node - 1U]) << read[node - 1U].error().message;
+    ASSERT_TRUE(read[node - 1U]) << read[node - 1U].error().message.text();
     EXPECT_EQ(read[node - 1U]->identity.node, node);
     EXPECT_GT(read[node - 1U]->entries.size(), 100U);
   }
@@ -120,7 +120,7 @@ TEST(Interleave, RestoresOfEightDrivesTakeAsLongAsTheLongest) {
   for (std::uint8_t node = 1; node <= 8; ++node)
     jobs.emplace_back([&, node] {
       const auto outcome = restore_of(node, 1U + node % 2U);
-      EXPECT_FALSE(outcome.failure) << outcome.failure->message;
+      EXPECT_FALSE(outcome.failure) << outcome.failure->message.text();
       EXPECT_EQ(outcome.writes, 1U + node % 2U);
     });
   for (std::uint8_t node = 1; node <= 8; ++node)

@@ -32,7 +32,7 @@ TEST_F(Lss, FastscanFindsTenSlavesWithoutANodeId) {
   {
     LssDialogue lss(*session, 50ms);
     const auto found = lss.scan();
-    ASSERT_TRUE(found) << found.error().message;
+    ASSERT_TRUE(found) << found.error().message.text();
     ASSERT_EQ(found->size(), 10U);
     std::set<std::uint32_t> serials, told;
     for (const auto& drive : cell.drives) serials.insert(address(*drive).serial);
@@ -58,7 +58,7 @@ TEST_F(Lss, FindsEverySlaveWhateverSingleFrameIsLost) {
   const auto scan = [&] {
     LssDialogue lss(*session, 20ms);
     const auto found = lss.scan();
-    EXPECT_TRUE(found) << found.error().message;
+    EXPECT_TRUE(found) << found.error().message.text();
     return found ? found->size() : 0;
   };
   EXPECT_EQ(scan(), 2U);
@@ -97,14 +97,14 @@ TEST_F(LssLiar, IsNoticedBeforeAScanWalksItsFirstIdentity) {
   const auto found = lss.scan();
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, Errc::negative);
-  EXPECT_EQ(found.error().message, "an LSS slave answers to whatever identity is asked for");
+  EXPECT_EQ(found.error().message.text(), "an LSS slave answers to whatever identity is asked for");
   EXPECT_LT(requests, 100);
 }
 
 TEST_F(LssLiar, EndsASearchByIdentity) {
   const auto found = lss.search({1, 2, 0, 0}, {1, 2, 0xFFFF'FFFF, 0xFFFF'FFFF});
   ASSERT_FALSE(found);
-  EXPECT_EQ(found.error().message, "an LSS slave answers to whatever identity is asked for");
+  EXPECT_EQ(found.error().message.text(), "an LSS slave answers to whatever identity is asked for");
   EXPECT_LT(requests, 10'000);
 }
 
@@ -164,7 +164,7 @@ TEST_F(Lss, SelectsByIdentityAndAsksWhoItIs) {
   build("sv2@3,sv2@4?lss");
   LssDialogue lss(*session, 50ms);
   const auto slave = lss.select(LssAddress{0x00445653, 1, 1, 2});
-  ASSERT_TRUE(slave) << slave.error().message;
+  ASSERT_TRUE(slave) << slave.error().message.text();
   EXPECT_EQ(slave->node, 4);
   const auto nobody = lss.select(LssAddress{0x00445653, 1, 1, 3});
   ASSERT_FALSE(nobody);
@@ -236,7 +236,7 @@ TEST_F(Lss, ASlaveThatAnswersEveryStepInTheConfigurationStateDoesNotDisturbTheSc
   session = std::make_unique<Session>(std::make_unique<LssBus>(bus, hooks), "can0", Options{});
   LssDialogue lss(*session, 20ms);
   const auto found = lss.scan();
-  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found) << found.error().message.text();
   EXPECT_EQ(found->size(), 2U);
 }
 
@@ -247,7 +247,7 @@ TEST_F(Lss, ARefusalIsToldInWordsAndASilenceIsNone) {
   const auto refused = lss.order(canopen::lss_set_node(200), "set its node-ID");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::negative);
-  EXPECT_NE(refused.error().message.find("the node-ID is out of its range"), std::string::npos);
+  EXPECT_NE(refused.error().message.text().find("the node-ID is out of its range"), std::string::npos);
   ASSERT_TRUE(lss.leave());
   const auto silent = lss.order(canopen::lss_set_node(5), "set its node-ID");
   ASSERT_FALSE(silent);
@@ -296,7 +296,7 @@ TEST_F(Lss, SearchFindsEverySlaveOfAKindWithANodeIdAndWithout) {
   session = std::make_unique<Session>(std::make_unique<LssBus>(bus, hooks), "can0", Options{});
   LssDialogue lss(*session, 20ms);
   const auto found = lss.search({0x00445653, 1, 0, 0}, {0x00445653, 1, 0xFFFFFFFF, 0xFFFFFFFF});
-  ASSERT_TRUE(found) << found.error().message;
+  ASSERT_TRUE(found) << found.error().message.text();
   const std::vector<LssAddress> expected{
       {0x00445653, 1, 1, 0}, {0x00445653, 1, 1, 0x80000000}, {0x00445653, 1, 1, 0xFFFFFFFF}};
   EXPECT_EQ(*found, expected);

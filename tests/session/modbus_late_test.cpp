@@ -97,9 +97,10 @@ TEST(ModbusLate, ALateAnswerIsPartOfTheMessageAboutSilence) {
   EXPECT_FALSE(unit.session->upload(1, kLateSpeed));
   const auto end = unit.session->upload(1, kLateTorque);
   ASSERT_FALSE(end);
-  EXPECT_NE(end.error().message.find("; it answered an earlier request after 0.2 s"), std::string::npos)
-      << end.error().message;
-  EXPECT_NE(end.error().hint.find("--timeout"), std::string::npos) << end.error().hint;
+  EXPECT_NE(end.error().message.text().find("; it answered an earlier request after 0.2 s"),
+            std::string::npos)
+      << end.error().message.text();
+  EXPECT_NE(end.error().hint.text().find("--timeout"), std::string::npos) << end.error().hint.text();
 }
 
 TEST(ModbusLate, ALineThatIsNeverSilentIsNotWaitedForWithoutEnd) {

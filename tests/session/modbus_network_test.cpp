@@ -81,7 +81,7 @@ TEST_F(ModbusNetworkTest, WithoutAFamilyThereAreNoObjects) {
   const auto read = session->upload(7, kSpeed);
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, Errc::usage);
-  EXPECT_NE(read.error().hint.find("-d"), std::string::npos);
+  EXPECT_NE(read.error().hint.text().find("-d"), std::string::npos);
 }
 
 TEST_F(ModbusNetworkTest, AnExceptionIsTheRefusalOfTheDrive) {
@@ -90,7 +90,7 @@ TEST_F(ModbusNetworkTest, AnExceptionIsTheRefusalOfTheDrive) {
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, Errc::sdo_abort);
   EXPECT_EQ(
-      read.error().message,
+      read.error().message.text(),
       "node 1, object 0x2033:0: the read of register 0033h was refused: Modbus exception 02h, illegal data "
       "address: it has no such register, or it cannot be written");
 }
@@ -119,8 +119,8 @@ TEST_F(ModbusNetworkTest, AUnitThatStaysBusyIsGivenUpAfterTheTimeout) {
   const auto write = session->download(1, kSpeed, {0xC8, 0x00});
   ASSERT_FALSE(write);
   EXPECT_EQ(write.error().code, Errc::timeout);
-  EXPECT_NE(write.error().message.find("Modbus exception 06h, server device busy"), std::string::npos)
-      << write.error().message;
+  EXPECT_NE(write.error().message.text().find("Modbus exception 06h, server device busy"), std::string::npos)
+      << write.error().message.text();
   EXPECT_GE(script.sent.size(), 3U);
   EXPECT_LE(script.now - begun, milliseconds(150));
 }
@@ -130,7 +130,7 @@ TEST_F(ModbusNetworkTest, AMalformedAnswerIsShownWithItsBytes) {
   const auto read = session->upload(1, kSpeed);
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, Errc::protocol);
-  EXPECT_EQ(read.error().message,
+  EXPECT_EQ(read.error().message.text(),
             "node 1, object 0x2033:0: the answer to register 0033h has another length than was asked for: 03 "
             "04 00 C8 00 00");
 }
@@ -182,9 +182,9 @@ TEST_F(ModbusNetworkTest, DamagedAnswersAreToldAsSuch) {
   const auto read = session->upload(1, kSpeed);
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().code, Errc::timeout);
-  EXPECT_NE(read.error().message.find("5 bytes came that are no message"), std::string::npos)
-      << read.error().message;
-  EXPECT_NE(read.error().hint.find("parity"), std::string::npos);
+  EXPECT_NE(read.error().message.text().find("5 bytes came that are no message"), std::string::npos)
+      << read.error().message.text();
+  EXPECT_NE(read.error().hint.text().find("parity"), std::string::npos);
 }
 
 TEST_F(ModbusNetworkTest, AnAnswerOfAnotherLengthIsAgainstTheProtocol) {
@@ -197,7 +197,8 @@ TEST_F(ModbusNetworkTest, AnotherUnitIsNamed) {
   script.answer = [](const Bytes&) {
     return std::vector{std::pair{Duration(5000), message(9, "03 02 00 01")}};
   };
-  EXPECT_NE(session->upload(1, kSpeed).error().message.find("unit 9 answered instead"), std::string::npos);
+  EXPECT_NE(session->upload(1, kSpeed).error().message.text().find("unit 9 answered instead"),
+            std::string::npos);
 }
 
 TEST_F(ModbusNetworkTest, ALineThatIsLostIsToldAndComesBack) {

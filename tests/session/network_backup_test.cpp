@@ -32,7 +32,7 @@ class DriveInMemory : public testing::TestWithParam<const char*> {
 TEST_P(DriveInMemory, IsBackedUpAndRestored) {
   const std::uint8_t nodes[] = {1};
   const auto taken = take_snapshots(*session, profile, nodes, {});
-  ASSERT_TRUE(taken.front()) << taken.front().error().message;
+  ASSERT_TRUE(taken.front()) << taken.front().error().message.text();
   Values before;
   for (const auto& entry : taken.front()->entries)
     if (entry.bytes) before.emplace(entry.object, *entry.bytes);
@@ -43,11 +43,11 @@ TEST_P(DriveInMemory, IsBackedUpAndRestored) {
     if (object.index >= 0x2000 && !bytes.empty() && ++count <= 10) bytes[0] ^= 1U;
   ASSERT_GT(count, 0U);
   const auto there = restore(*session, &profile, 1, before, changed, {});
-  ASSERT_FALSE(there.failure) << there.failure->message;
+  ASSERT_FALSE(there.failure) << there.failure->message.text();
   EXPECT_TRUE(there.all_written);
   for (const auto& [object, bytes] : changed) EXPECT_EQ(objects.values[object], bytes) << to_string(object);
   const auto back = restore(*session, &profile, 1, changed, before, {});
-  ASSERT_FALSE(back.failure) << back.failure->message;
+  ASSERT_FALSE(back.failure) << back.failure->message.text();
   EXPECT_EQ(back.writes, there.writes);
   for (const auto& [object, bytes] : before) EXPECT_EQ(objects.values[object], bytes) << to_string(object);
 }

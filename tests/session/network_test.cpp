@@ -69,7 +69,7 @@ TEST_F(NetworkTest, FindsWhoIsThereAndWhatTheySay) {
   EXPECT_EQ(found->front().state, NodeState::pre_operational);
   EXPECT_LT(session->now() - before, 530ms) << "those that are not there cost one timeout in all";
   const auto identity = read_identity(*session, 1);
-  ASSERT_TRUE(identity) << identity.error().message;
+  ASSERT_TRUE(identity) << identity.error().message.text();
   EXPECT_EQ(identity->product_code, 7U);
 }
 
@@ -85,7 +85,7 @@ TEST_F(NetworkTest, ReadsAnIdentityAgainWhenTheNodeHasRestarted) {
 TEST_F(NetworkTest, WritesReadsBackAndCompares) {
   const SdoRequest request{1, objects::kModeOfOperation, Bytes{3}};
   const auto written = write_all(*session, std::span(&request, 1), true);
-  ASSERT_TRUE(written.front()) << written.front().error().message;
+  ASSERT_TRUE(written.front()) << written.front().error().message.text();
   EXPECT_EQ(written.front()->read_back, Bytes{3});
   EXPECT_EQ(objects.values[objects::kModeOfOperation], Bytes{3});
 }
@@ -101,7 +101,7 @@ TEST_F(NetworkTest, TellsARefusalWithItsAbortCodeAndWritesNothingAfterIt) {
   EXPECT_EQ(answers[1].error().abort_code, 0x0601'0002U);
   EXPECT_EQ(answers[1].error().object, objects::kStatusword);
   ASSERT_FALSE(answers[2]);
-  EXPECT_NE(answers[2].error().message.find("skipped because"), std::string::npos);
+  EXPECT_NE(answers[2].error().message.text().find("skipped because"), std::string::npos);
   EXPECT_EQ(objects.writes.size(), 1U);
   EXPECT_EQ(session->upload(1, {0x5FFF, 0}).error().abort_code, 0x0602'0000U);
 }
@@ -121,7 +121,7 @@ TEST_F(NetworkTest, ReadsAgainWhereAnAnswerWasLostAndNeverWritesTwice) {
   node->lost_answers = 1;
   const SdoRequest request{1, objects::kModeOfOperation, Bytes{3}};
   const auto written = write_all(*session, std::span(&request, 1), false);
-  ASSERT_TRUE(written.front()) << written.front().error().message;
+  ASSERT_TRUE(written.front()) << written.front().error().message.text();
   EXPECT_TRUE(written.front()->answer_lost);
   EXPECT_EQ(objects.writes.size(), 1U);
 }
@@ -183,7 +183,7 @@ TEST_F(NetworkTest, TakesANodeOutOfOperationalAndPutsItBack) {
 TEST_F(NetworkTest, AsksForAStateThatIsNotToldByItself) {
   node->state = NodeState::safe_operational;
   const auto state = ask_state(*session, 1);
-  ASSERT_TRUE(state) << state.error().message;
+  ASSERT_TRUE(state) << state.error().message.text();
   EXPECT_EQ(*state, NodeState::safe_operational);
 }
 

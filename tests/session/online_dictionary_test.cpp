@@ -19,7 +19,7 @@ ethercat::CoeEntry described(std::uint16_t type, std::uint16_t bits, std::uint16
 TEST_F(OnlineDictionaryTest, IsWhatTheDriveSaysOfItsObjects) {
   open(p20() + "@1");
   const auto online = read_online_dictionary(*session_, 1);
-  ASSERT_TRUE(online) << online.error().message;
+  ASSERT_TRUE(online) << online.error().message.text();
   EXPECT_TRUE(online->left_out.empty());
   const auto& own = port_->cell().profiles.front()->dictionary;
   ASSERT_EQ(online->sheet.dictionary.objects().size(), own.objects().size());
@@ -43,7 +43,7 @@ TEST_F(OnlineDictionaryTest, IsReadOverLossesToo) {
   open(p20() + "@1");
   ring().faults().loses_every = 9;
   const auto online = read_online_dictionary(*session_, 1);
-  ASSERT_TRUE(online) << online.error().message;
+  ASSERT_TRUE(online) << online.error().message.text();
   EXPECT_EQ(online->sheet.dictionary.entry_count(), port_->cell().profiles.front()->dictionary.entry_count());
 }
 
@@ -51,10 +51,10 @@ TEST_F(OnlineDictionaryTest, ADriveWithoutOneSaysSoAndWhatToUseInstead) {
   open("sv2@1");
   const auto online = read_online_dictionary(*session_, 1);
   ASSERT_FALSE(online);
-  EXPECT_TRUE(
-      online.error().message.starts_with("node 1 does not describe its objects (no SDO information): "))
-      << online.error().message;
-  EXPECT_NE(online.error().hint.find("-d FILE.xml"), std::string::npos) << online.error().hint;
+  EXPECT_TRUE(online.error().message.text().starts_with(
+      "node 1 does not describe its objects (no SDO information): "))
+      << online.error().message.text();
+  EXPECT_NE(online.error().hint.text().find("-d FILE.xml"), std::string::npos) << online.error().hint.text();
 }
 
 TEST_F(OnlineDictionaryTest, ADriveThatGoesInTheMiddleEndsIt) {
@@ -65,7 +65,7 @@ TEST_F(OnlineDictionaryTest, ADriveThatGoesInTheMiddleEndsIt) {
   };
   const auto online = read_online_dictionary(*session_, 1);
   ASSERT_FALSE(online);
-  EXPECT_EQ(online.error().code, Errc::timeout) << online.error().message;
+  EXPECT_EQ(online.error().code, Errc::timeout) << online.error().message.text();
 }
 
 TEST(OnlineEntry, AccessIsThatOfAllStatesAndItsLimitsAreTold) {

@@ -15,7 +15,7 @@ TEST(BusUrl, IsCheckedBeforeAnythingIsOpened) {
     const auto wrong = check_url(url);
     ASSERT_FALSE(wrong) << url;
     EXPECT_EQ(wrong.error().code, Errc::usage) << url;
-    EXPECT_FALSE(wrong.error().hint.empty()) << url;
+    EXPECT_FALSE(wrong.error().hint.text().empty()) << url;
   }
 }
 

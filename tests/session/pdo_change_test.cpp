@@ -88,7 +88,7 @@ void expect_kept(PdoWorld& world, const RestoreOutcome& outcome, const Values& b
   }
   EXPECT_EQ(outcome.rolled_back, outcome.astray.empty());
   if (!outcome.rolled_back) return;
-  EXPECT_EQ(now, before) << outcome.failure->message;
+  EXPECT_EQ(now, before) << outcome.failure->message.text();
   EXPECT_EQ(world.drive().nmt_state(), NmtState::operational);
 }
 
@@ -97,7 +97,7 @@ TEST_P(EveryFamily, GetsTheNewMappingAndItsNmtStateBack) {
   const auto wish = wish_of(*world);
   const auto before = world->read();
   const auto outcome = world->change(wish.pdos, {}, wish.assignments);
-  ASSERT_FALSE(outcome.failure) << outcome.failure->message;
+  ASSERT_FALSE(outcome.failure) << outcome.failure->message.text();
   EXPECT_TRUE(outcome.notices.empty() || std::string_view(GetParam()) == "ts" ||
               std::string_view(GetParam()) == "sv2");
   expect_kept(*world, outcome, before, wish);
@@ -157,9 +157,9 @@ TEST(PdoChange, LeavesADrivePreOperationalWhereNothingTellsItsState) {
   auto pdo = world.pdo("TPDO2");
   pdo.entries = {entry(0x60640020)};
   const auto outcome = world.change({pdo});
-  ASSERT_FALSE(outcome.failure) << outcome.failure->message;
+  ASSERT_FALSE(outcome.failure) << outcome.failure->message.text();
   ASSERT_EQ(outcome.notices.size(), 1U);
-  EXPECT_NE(outcome.notices[0].find("stays pre-operational"), std::string::npos);
+  EXPECT_NE(outcome.notices[0].text().find("stays pre-operational"), std::string::npos);
   EXPECT_EQ(world.drive().nmt_state(), NmtState::pre_operational);
 }
 
@@ -199,9 +199,9 @@ TEST(PdoChange, OfAnUnknownDriveIsTriedAgainPreOperational) {
     auto pdo = world.pdo("TPDO2");
     pdo.entries = {entry(pdo.entries.size() == 1 ? 0x60640020 : 0x60410010)};
     const auto outcome = world.change({pdo});
-    ASSERT_FALSE(outcome.failure) << outcome.failure->message;
+    ASSERT_FALSE(outcome.failure) << outcome.failure->message.text();
     ASSERT_EQ(outcome.notices.size(), 1U);
-    EXPECT_NE(outcome.notices[0].find("tried again pre-operational"), std::string::npos);
+    EXPECT_NE(outcome.notices[0].text().find("tried again pre-operational"), std::string::npos);
     EXPECT_EQ(world.pdo("TPDO2"), pdo);
     EXPECT_EQ(world.drive().nmt_state(), NmtState::operational);
   }
@@ -233,9 +233,9 @@ TEST(PdoChange, OfAnUnknownDriveThatKeepsItsCobIdIsTriedAgainWithout) {
   auto pdo = world.pdo("TPDO2");
   pdo.entries = {entry(0x60640020)};
   const auto outcome = world.change({pdo});
-  ASSERT_FALSE(outcome.failure) << outcome.failure->message;
+  ASSERT_FALSE(outcome.failure) << outcome.failure->message.text();
   ASSERT_FALSE(outcome.notices.empty());
-  EXPECT_NE(outcome.notices[0].find("with the COB-ID left alone"), std::string::npos);
+  EXPECT_NE(outcome.notices[0].text().find("with the COB-ID left alone"), std::string::npos);
   EXPECT_EQ(world.pdo("TPDO2"), pdo);
 }
 
@@ -252,7 +252,7 @@ TEST(PdoChange, TheInhibitTimeOfAValidTpdoIsChangedWhileThePdoIsSwitchedOff) {
       if (!known && std::string_view(family) != "da200") world.client_profile = nullptr;
       pdo.inhibit = static_cast<std::uint16_t>(*pdo.inhibit + 50);
       const auto outcome = world.change({pdo});
-      EXPECT_FALSE(outcome.failure) << outcome.failure->message;
+      EXPECT_FALSE(outcome.failure) << outcome.failure->message.text();
       EXPECT_EQ(world.pdo("TPDO1"), pdo);
     }
 }
@@ -264,7 +264,7 @@ TEST(PdoChange, TheInhibitTimeIsAReasonToSwitchATpdoOffWhereMappingsAreOpenedByT
   auto pdo = world.pdo("TPDO1");
   pdo.inhibit = std::uint16_t{100};
   const auto outcome = world.change({pdo});
-  EXPECT_FALSE(outcome.failure) << outcome.failure->message;
+  EXPECT_FALSE(outcome.failure) << outcome.failure->message.text();
   EXPECT_EQ(world.pdo("TPDO1"), pdo);
 }
 
@@ -303,7 +303,7 @@ TEST(PdoChange, ADriveThatRefusedBecauseOfItsStateIsStartedAgain) {
   auto pdo = world.pdo("TPDO2");
   pdo.entries = {entry(0x60640020)};
   const auto outcome = world.change({pdo});
-  ASSERT_FALSE(outcome.failure) << outcome.failure->message;
+  ASSERT_FALSE(outcome.failure) << outcome.failure->message.text();
   ASSERT_EQ(outcome.notices.size(), 1U) << testing::PrintToString(outcome.notices);
   EXPECT_EQ(world.drive().nmt_state(), NmtState::operational);
 }

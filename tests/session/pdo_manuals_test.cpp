@@ -29,7 +29,7 @@ void expect_frames(PdoWorld& world, const Example& example) {
   pdo.entries.clear();
   for (const auto word : example.entries) pdo.entries.push_back(entry(word));
   const auto outcome = world.change({pdo});
-  ASSERT_FALSE(outcome.failure) << outcome.failure->message;
+  ASSERT_FALSE(outcome.failure) << outcome.failure->message.text();
   Frames mapping;
   for (const auto& frame : world.sent) {
     const auto index = can::parse_frame(frame)->data[2];
@@ -162,7 +162,7 @@ TEST(PdoManuals, Sv2AssignsOneOfItsFixedPdos) {
             (std::vector{entry(0x60400010), entry(0x607A0020), entry(0x60FF0020), entry(0x60710010),
                          entry(0x60600008), entry(0x60B80010), entry(0x607F0020)}));
   const auto outcome = world.change({}, {}, {{{0x1C12, 0}, {1}}, {{0x1C12, 1}, {0x02, 0x17}}});
-  ASSERT_FALSE(outcome.failure) << outcome.failure->message;
+  ASSERT_FALSE(outcome.failure) << outcome.failure->message.text();
   // 546: 1C12h takes 1600h, 1701h to 1705h.
   ASSERT_GE(world.sent.size(), 2U);
   EXPECT_EQ(Frames(world.sent.end() - 2, world.sent.end()),

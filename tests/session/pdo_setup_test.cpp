@@ -88,7 +88,7 @@ TEST_F(PdoSetup, TellsWhatTheManualSaysTheDriveLeavesTheFactoryWith) {
   const auto profile = profile_of("gsd600");
   attach(profile, 5);
   const auto pdos = read_pdos(session(), &profile, 5);
-  ASSERT_TRUE(pdos) << pdos.error().message;
+  ASSERT_TRUE(pdos) << pdos.error().message.text();
   ASSERT_EQ(names_of(*pdos), (std::vector<std::string>{"RPDO1", "RPDO2", "RPDO3", "RPDO4", "TPDO1", "TPDO2",
                                                        "TPDO3", "TPDO4"}));
   EXPECT_EQ((*pdos)[2].cob_id, 0x405U);
@@ -105,7 +105,7 @@ TEST_F(PdoSetup, IsTheSameWithoutADictionary) {
   const auto with = read_pdos(session(), &profile, 3);
   const auto without = read_pdos(session(), nullptr, 3);
   ASSERT_TRUE(with);
-  ASSERT_TRUE(without) << without.error().message;
+  ASSERT_TRUE(without) << without.error().message.text();
   EXPECT_EQ(*with, *without);
 }
 
@@ -185,7 +185,8 @@ TEST_F(PdoSetup, KnowsFixedPdosWithoutCobIdAndWhichOfThemAreAssigned) {
           .empty());
   const SdoRequest assign[] = {
       {1, {0x1C12, 0}, Bytes{0}}, {1, {0x1C12, 1}, Bytes{2, 0x17}}, {1, {0x1C12, 0}, Bytes{1}}};
-  for (const auto& written : session().transfer(assign)) ASSERT_TRUE(written) << written.error().message;
+  for (const auto& written : session().transfer(assign))
+    ASSERT_TRUE(written) << written.error().message.text();
   EXPECT_EQ(
       assigned_pdos(&profile,
                     read_pdo_values(session(), &profile, std::array<std::uint8_t, 1>{1}).front().value()),

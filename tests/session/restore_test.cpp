@@ -118,7 +118,8 @@ void expect_kept(World& world, const RestoreOutcome& outcome) {
   for (const auto& [object, data] : now) {
     const bool told = std::find(outcome.astray.begin(), outcome.astray.end(), object) != outcome.astray.end();
     if (!told) {
-      EXPECT_EQ(data, world.present.at(object)) << to_string(object) << "; " << outcome.failure->message;
+      EXPECT_EQ(data, world.present.at(object))
+          << to_string(object) << "; " << outcome.failure->message.text();
     }
   }
   EXPECT_EQ(outcome.rolled_back, outcome.astray.empty());
@@ -130,7 +131,7 @@ TEST(Restore, WritesWhatDiffersAndEndsWithWhatIsWanted) {
     World world(each.first);
     EXPECT_NE(world.present, world.wanted);
     const auto outcome = world.run({}, 1);
-    EXPECT_FALSE(outcome.failure) << outcome.failure->message;
+    EXPECT_FALSE(outcome.failure) << outcome.failure->message.text();
     EXPECT_GT(outcome.writes, 2U);
     expect_kept(world, outcome);
   }
@@ -169,7 +170,7 @@ TEST(Restore, PutsEverythingBackAfterARefusalAtAnyStep) {
     ASSERT_TRUE(outcome.failure);
     EXPECT_TRUE(outcome.rolled_back);
     for (const auto& notice : outcome.notices)
-      EXPECT_EQ(notice.find("what was written went to RAM"), std::string::npos) << notice;
+      EXPECT_EQ(notice.text().find("what was written went to RAM"), std::string::npos) << notice.text();
   });
 }
 

@@ -20,7 +20,7 @@ class RingManualSteps : public EtherCatTest {
   }
   void write(ObjectAddress object, unsigned value, std::size_t size) {
     const auto done = session_->download(1, object, store_le(value, size));
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
   }
   unsigned status() {
     const auto word = session_->upload(1, objects::kStatusword);

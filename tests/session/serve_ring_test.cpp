@@ -70,7 +70,7 @@ class RingEndTest : public testing::Test {
   /// Until all is in, and some more waits have passed.
   Result<void> serve(std::string_view drives) {
     auto cell = sim::build_esc_cell(drives, kRingFolders, wire_.now);
-    EXPECT_TRUE(cell) << cell.error().message;
+    EXPECT_TRUE(cell) << cell.error().message.text();
     std::size_t idle = 0;
     RingEnd end(std::make_unique<WirePort>(wire_), [&] { return wire_.coming.empty() && ++idle > 3; });
     return end.serve(*cell);
@@ -121,7 +121,7 @@ TEST_F(RingEndTest, AnInterfaceThatIsGoneIsTold) {
   wire_.broken = true;
   const auto served = serve("sv2@1");
   ASSERT_FALSE(served);
-  EXPECT_EQ(served.error().message, "veth1 went down");
+  EXPECT_EQ(served.error().message.text(), "veth1 went down");
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ TEST_F(SessionTest, NeverSendsAWriteTwiceAndFindsThatItArrived) {
   bench->cell.drives[0]->wire_faults().drop_answers = 1;
   const SdoRequest request{1, {0x6060, 0}, Bytes{3}};
   const auto written = write_all(*session, std::span(&request, 1), false);
-  ASSERT_TRUE(written.front()) << written.front().error().message;
+  ASSERT_TRUE(written.front()) << written.front().error().message.text();
   EXPECT_TRUE(written.front()->answer_lost);
   EXPECT_EQ(std::count(bench->sent.begin(), bench->sent.end(), "601#2F60600003000000"), 1);
 }
@@ -165,7 +165,7 @@ TEST_F(SessionTest, SaysThatItIsUnknownWhetherAWriteArrivedAtANodeThatFellSilent
   const auto gone = write_all(*session, std::span(&request, 1), false);
   ASSERT_FALSE(gone.front());
   EXPECT_EQ(gone.front().error().code, Errc::timeout);
-  EXPECT_NE(gone.front().error().message.find("cannot be read back"), std::string::npos);
+  EXPECT_NE(gone.front().error().message.text().find("cannot be read back"), std::string::npos);
   EXPECT_EQ(state_text(gone.front(), request.object), "not known");
   EXPECT_EQ(std::count(bench->sent.begin(), bench->sent.end(), "601#2F60600003000000"), 2);
 }
@@ -196,7 +196,7 @@ TEST_F(SessionTest, SaysSoWhenAWriteWithoutAnswerHadNoEffect) {
   EXPECT_EQ(written.front().error().code, Errc::negative);
   EXPECT_EQ(state_text(written.front(), request.object), "holds another value");
   EXPECT_EQ(
-      written.front().error().message,
+      written.front().error().message.text(),
       "node 1, object 0x6060:0: the write was sent, but no answer came, and it had no effect: the object "
       "holds 01");
 }
@@ -210,7 +210,7 @@ TEST_F(SessionTest, SendsNoFurtherWriteAfterARefusedOne) {
   EXPECT_EQ(answers[1].error().code, Errc::sdo_abort);
   EXPECT_EQ(answers[1].error().abort_code, 0x0602'0000U);
   ASSERT_FALSE(answers[2]);
-  EXPECT_NE(answers[2].error().message.find("skipped because"), std::string::npos);
+  EXPECT_NE(answers[2].error().message.text().find("skipped because"), std::string::npos);
   EXPECT_EQ(session->upload(1, {0x6061, 0}).value(), Bytes{3});
 }
 
@@ -218,7 +218,7 @@ TEST_F(SessionTest, ReadsWhatItWroteAndComparesIt) {
   open("gsd600@1");
   const SdoRequest request{1, {0x2001, 0x0F}, Bytes{0xC2, 0x01}};
   const auto written = write_all(*session, std::span(&request, 1), true);
-  ASSERT_TRUE(written.front()) << written.front().error().message;
+  ASSERT_TRUE(written.front()) << written.front().error().message.text();
   EXPECT_EQ(written.front()->read_back, (Bytes{0xC2, 0x01}));
 }
 

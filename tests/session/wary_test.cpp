@@ -177,7 +177,7 @@ TEST(AccessAlarms, TheRulesOfAFamilyThatHasThemAreFound) {
   const auto file = stem.string() + ".toml";
   std::ofstream(file) << "format = 1\nfamily = \"alarming\"\n[fault]\n\"object\\u005falarm\" = \"Er1\"\n";
   EXPECT_TRUE(drive::load_rules({"alarming", stem}).has_value())
-      << drive::load_rules({"alarming", stem}).error().message;
+      << drive::load_rules({"alarming", stem}).error().message.text();
   EXPECT_NE(drive::alarm_rules({"alarming", stem}), nullptr) << "a key may be written so";
   std::filesystem::remove(file);
 }

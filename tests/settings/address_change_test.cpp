@@ -16,7 +16,7 @@ class AddressOf : public testing::TestWithParam<const char*> {};
 TEST_P(AddressOf, ADriveThatIsRestartedOverTheBusIsFoundAtItsNewNode) {
   AddressWorld world(GetParam(), {3});
   const auto outcome = move_to(world, 3, 5);
-  EXPECT_EQ(outcome.end, AddressEnd::moved) << (outcome.error ? outcome.error->message : "");
+  EXPECT_EQ(outcome.end, AddressEnd::moved) << (outcome.error ? outcome.error->message.text() : "");
   EXPECT_EQ(world.drives[0]->node(), 5);
   EXPECT_EQ(world.count("000#8103"), 1U);
   // A power cycle changes nothing any more.
@@ -48,7 +48,7 @@ TEST(AddressChange, ADriveThatIsSwitchedOffAndOnIsWaitedFor) {
     world.switch_off_and_on(0);
   };
   const auto outcome = move_to(world, 3, 5, {.unlock = true, .patience = 60s});
-  EXPECT_EQ(outcome.end, AddressEnd::moved) << (outcome.error ? outcome.error->message : "");
+  EXPECT_EQ(outcome.end, AddressEnd::moved) << (outcome.error ? outcome.error->message.text() : "");
 }
 
 TEST(AddressChange, ADriveThatNobodySwitchesOffIsToldToBeAtItsOldNode) {
@@ -57,7 +57,8 @@ TEST(AddressChange, ADriveThatNobodySwitchesOffIsToldToBeAtItsOldNode) {
   EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
   ASSERT_TRUE(outcome.error);
   EXPECT_EQ(outcome.error->code, Errc::negative);
-  EXPECT_NE(outcome.error->message.find("not switched off"), std::string::npos) << outcome.error->message;
+  EXPECT_NE(outcome.error->message.text().find("not switched off"), std::string::npos)
+      << outcome.error->message.text();
 }
 
 TEST(AddressChange, ALockedParameterNamesThePassword) {
@@ -65,14 +66,14 @@ TEST(AddressChange, ALockedParameterNamesThePassword) {
   const auto outcome = move_to(world, 3, 5);
   EXPECT_EQ(outcome.end, AddressEnd::as_before);
   ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->hint.find("--unlock"), std::string::npos) << outcome.error->hint;
+  EXPECT_NE(outcome.error->hint.text().find("--unlock"), std::string::npos) << outcome.error->hint.text();
   EXPECT_EQ(world.held(0, "Fn_9A"), 3U);
 }
 
 TEST(AddressChange, AfterCtrlCNothingIsWritten) {
   AddressWorld world("gsd600", {3});
   const auto change = plan_address(world.desk, 3, {.node = 5});
-  ASSERT_TRUE(change) << change.error().message;
+  ASSERT_TRUE(change) << change.error().message.text();
   world.session->options().cancelled = [] { return true; };
   world.sent.clear();
   const auto outcome = change_address(world.desk, *change, {});
@@ -124,7 +125,8 @@ TEST(AddressChange, AWriteThatIsAcknowledgedAndNotDoneIsNoticed) {
   world.drives[0]->misbehaviour().feigned.insert(0x2000);
   const auto outcome = move_to(world, 3, 5);
   ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("acknowledged"), std::string::npos) << outcome.error->message;
+  EXPECT_NE(outcome.error->message.text().find("acknowledged"), std::string::npos)
+      << outcome.error->message.text();
   EXPECT_EQ(world.count("000#8103"), 0U) << "what is not written is not restarted";
 }
 
@@ -134,7 +136,8 @@ TEST(AddressChange, AnAddressThatCannotBeKeptIsPutBack) {
   const auto outcome = move_to(world, 3, 5);
   EXPECT_EQ(outcome.end, AddressEnd::as_before);
   ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("written back"), std::string::npos) << outcome.error->message;
+  EXPECT_NE(outcome.error->message.text().find("written back"), std::string::npos)
+      << outcome.error->message.text();
   EXPECT_EQ(world.held(0, "0x2003:01"), 3U);
   EXPECT_EQ(world.count("000#8103"), 0U);
 }
@@ -147,9 +150,9 @@ TEST(AddressChange, AnAddressWhoseStoringIsNotAnsweredMayHold) {
   const auto outcome = move_to(world, 3, 5);
   EXPECT_EQ(outcome.end, AddressEnd::failed) << text_of(outcome.end);
   ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("which of them it has after power-off is not known"),
+  EXPECT_NE(outcome.error->message.text().find("which of them it has after power-off is not known"),
             std::string::npos)
-      << outcome.error->message;
+      << outcome.error->message.text();
   EXPECT_EQ(world.held(0, "Pn0049"), 3U) << "the old one was written back";
 }
 
@@ -200,7 +203,7 @@ TEST(AddressChange, ADriveWithANewBitrateIsNotWaitedForEither) {
   ASSERT_TRUE(change);
   const auto outcome = change_address(world.desk, *change, {.patience = 60s});
   EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
-  EXPECT_FALSE(outcome.error) << outcome.error->message;
+  EXPECT_FALSE(outcome.error) << outcome.error->message.text();
 }
 
 TEST(AddressChange, BothValuesAreWrittenOrNone) {
@@ -234,13 +237,14 @@ TEST(AddressChange, WhatWasPutBackIntoTheFlashOfADriveThatWorkedInItsRamIsTold) 
     set("Fn_99", 1);
     if (trial) set("Fn_9A", 7);
     const auto change = plan_address(world.desk, 3, {.node = 5, .bitrate = 250'000});
-    ASSERT_TRUE(change) << change.error().message;
+    ASSERT_TRUE(change) << change.error().message.text();
     world.drives[0]->misbehaviour().refused.insert(drive::place_of(world.profile, "Fn_9C")->index);
     const auto outcome = change_address(world.desk, *change, {.unlock = true});
     ASSERT_TRUE(outcome.error);
-    EXPECT_EQ(outcome.end, trial ? AddressEnd::failed : AddressEnd::as_before) << outcome.error->message;
-    EXPECT_EQ(outcome.error->message.find("its flash was not put back") != std::string::npos, trial)
-        << outcome.error->message;
+    EXPECT_EQ(outcome.end, trial ? AddressEnd::failed : AddressEnd::as_before)
+        << outcome.error->message.text();
+    EXPECT_EQ(outcome.error->message.text().find("its flash was not put back") != std::string::npos, trial)
+        << outcome.error->message.text();
   }
 }
 

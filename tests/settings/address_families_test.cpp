@@ -40,8 +40,8 @@ class PlanOfFamilies : public PlanOfAddresses {
 TEST_F(PlanOfFamilies, ExchangeTheirNodeIdsInOnePlan) {
   const auto cell = world();
   const auto done = go(*cell);
-  ASSERT_TRUE(done) << done.error().message;
-  EXPECT_TRUE(cell->desk.errors.empty()) << cell->desk.errors.front().message;
+  ASSERT_TRUE(done) << done.error().message.text();
+  EXPECT_TRUE(cell->desk.errors.empty()) << cell->desk.errors.front().message.text();
   EXPECT_EQ(nodes(*cell), "2 4 1");
   EXPECT_EQ(held_, (std::vector<std::string>{"1 gsd600", "2 da200", "3 gsd600"}));
   EXPECT_EQ(cell->desk.profile, nullptr);
@@ -75,8 +75,8 @@ TEST_F(PlanOfFamilies, KilledAnywhereCanBeGoneOnWith) {
     }
     ++resumed;
     const auto done = go(*cell, true);
-    ASSERT_TRUE(done) << kill_at << ": " << done.error().message;
-    EXPECT_TRUE(cell->desk.errors.empty()) << kill_at << ": " << cell->desk.errors.front().message;
+    ASSERT_TRUE(done) << kill_at << ": " << done.error().message.text();
+    EXPECT_TRUE(cell->desk.errors.empty()) << kill_at << ": " << cell->desk.errors.front().message.text();
     EXPECT_EQ(nodes(*cell), "2 1") << kill_at;
     EXPECT_FALSE(has_journal()) << kill_at;
   }
@@ -94,7 +94,7 @@ TEST_F(PlanOfFamilies, AreTheOnesThatItWasBegunWith) {
   const auto refused = run_address_plan(cell->desk, text_, file_, wrong);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::refused);
-  EXPECT_EQ(refused.error().message, "line 3: it was begun as a da200, not as a gsd600");
+  EXPECT_EQ(refused.error().message.text(), "line 3: it was begun as a da200, not as a gsd600");
   cell->drives[2]->misbehaviour().refused.clear();
   held_.clear();
   ASSERT_TRUE(go(*cell, true));

@@ -29,7 +29,7 @@ class PlanOfBitrates : public PlanOfAddresses {
       if (is_write_to(frame, bitrate)) world.drives[1]->wire_faults().silent = true;
     };
     const auto done = run(world);
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
     EXPECT_FALSE(world.desk.errors.empty());
     EXPECT_EQ(world.held(0, "Pn0048"), 5U);
     EXPECT_TRUE(has_journal());
@@ -71,7 +71,8 @@ TEST_F(PlanOfBitrates, WritesNoneToADriveThatWasReplacedBeforeItIsResumed) {
     ASSERT_NE(before, 5U);
     (void)run(replaced, true);
     ASSERT_FALSE(replaced.desk.errors.empty()) << text;
-    EXPECT_EQ(replaced.desk.errors.front().code, Errc::refused) << replaced.desk.errors.front().message;
+    EXPECT_EQ(replaced.desk.errors.front().code, Errc::refused)
+        << replaced.desk.errors.front().message.text();
     EXPECT_EQ(replaced.held(0, "Pn0048"), before);
     EXPECT_EQ(replaced.held(1, "Pn0048"), before);
     EXPECT_TRUE(has_journal()) << "it can still be resumed with the drives that it was made for";
@@ -87,8 +88,8 @@ TEST_F(PlanOfBitrates, IsResumedWithTheDrivesThatItWasMadeFor) {
   world.hooks = {};
   world.restart_session();
   const auto done = run(world, true);
-  ASSERT_TRUE(done) << done.error().message;
-  EXPECT_TRUE(world.desk.errors.empty()) << world.desk.errors.front().message;
+  ASSERT_TRUE(done) << done.error().message.text();
+  EXPECT_TRUE(world.desk.errors.empty()) << world.desk.errors.front().message.text();
   EXPECT_EQ(world.held(1, "Pn0048"), 5U);
   EXPECT_FALSE(has_journal());
 }
@@ -101,7 +102,7 @@ TEST_F(PlanOfBitrates, ADryRunShowsTheFramesThatAreSent) {
     AddressWorld world("gsd600", {1, 2, 3});
     world.desk.dry_run = true;
     const auto planned = run(world);
-    ASSERT_TRUE(planned) << planned.error().message;
+    ASSERT_TRUE(planned) << planned.error().message.text();
     const auto changes = [](const std::string& text_of_frame) {
       const auto frame = *can::parse_frame(text_of_frame);
       return frame.id == 0 || (frame.id > 0x600 && frame.id < 0x680 && (frame.data[0] & 0xE0U) == 0x20);
@@ -125,8 +126,8 @@ TEST_F(PlanOfBitrates, TakesTheInterfaceAlongWithDrivesOfSeveralFamilies) {
   cell.wire->rates[4] = 250'000;
   text_ = "node,new,bitrate\n3,3,125k\n4,4,125k\n";
   const auto done = run_in(cell, {&cell.world.profile, &other});
-  ASSERT_TRUE(done) << done.error().message;
-  EXPECT_TRUE(cell.world.desk.errors.empty()) << cell.world.desk.errors.front().message;
+  ASSERT_TRUE(done) << done.error().message.text();
+  EXPECT_TRUE(cell.world.desk.errors.empty()) << cell.world.desk.errors.front().message.text();
   for (const auto& row : done->table()->rows)
     EXPECT_EQ(std::get<std::string>(row.back().data()), "found at its new bitrate");
   EXPECT_EQ(cell.world.count("000#8100"), 1U);
@@ -141,7 +142,7 @@ TEST_F(PlanOfBitrates, RestartsNobodyWhereSomebodyWasEnabledMeanwhile) {
   ASSERT_TRUE(run_in(cell, {&cell.world.profile}));
   EXPECT_EQ(looks_, 2);
   ASSERT_FALSE(cell.world.desk.errors.empty());
-  EXPECT_EQ(cell.world.desk.errors.front().message, "node 3 is energised");
+  EXPECT_EQ(cell.world.desk.errors.front().message.text(), "node 3 is energised");
   EXPECT_EQ(cell.world.count("000#8100"), 0U);
   EXPECT_TRUE(has_journal()) << "--resume goes on with the switch alone";
   EXPECT_NE(cell.world.notices().find("--resume continues"), std::string::npos) << cell.world.notices();

@@ -19,9 +19,9 @@ using Taken = std::set<std::uint8_t>;
 
 std::string order_of(const char* csv, const Taken& taken) {
   const auto rows = parse_address_plan(csv, "plan.csv");
-  if (!rows) return rows.error().message;
+  if (!rows) return rows.error().message.text();
   const auto steps = order_address_steps(*rows, taken);
-  if (!steps) return steps.error().message;
+  if (!steps) return steps.error().message.text();
   std::string out;
   for (const auto& step : *steps) out += fmt::format("{}{}>{}", out.empty() ? "" : " ", step.from, step.to);
   return out;
@@ -66,14 +66,15 @@ TEST(AddressPlan, NamesTheLineOfWhatIsWrong) {
   for (const auto& [csv, part] : rows) {
     const auto read = parse_address_plan(csv, "plan.csv");
     ASSERT_FALSE(read) << csv;
-    EXPECT_NE(read.error().message.find(part), std::string::npos) << csv << ": " << read.error().message;
+    EXPECT_NE(read.error().message.text().find(part), std::string::npos)
+        << csv << ": " << read.error().message.text();
   }
 }
 
 TEST_F(PlanOfAddresses, PutsEveryDriveWhereItIsToBe) {
   AddressWorld world("gsd600", {1, 2, 3, 4});
   ASSERT_TRUE(run(world));
-  EXPECT_TRUE(world.desk.errors.empty()) << world.desk.errors.front().message;
+  EXPECT_TRUE(world.desk.errors.empty()) << world.desk.errors.front().message.text();
   EXPECT_EQ(nodes(world), "2 3 1 14");
   EXPECT_FALSE(has_journal());
 }
@@ -110,8 +111,8 @@ TEST_F(PlanOfAddresses, KilledAnywhereCanBeGoneOnWith) {
     const auto done = run(world, journal);
     resumed += journal ? 1 : 0;
     if (!journal && nodes(world) != "2 1") continue;
-    ASSERT_TRUE(done) << kill_at << ": " << done.error().message;
-    EXPECT_TRUE(world.desk.errors.empty()) << kill_at << ": " << world.desk.errors.front().message;
+    ASSERT_TRUE(done) << kill_at << ": " << done.error().message.text();
+    EXPECT_TRUE(world.desk.errors.empty()) << kill_at << ": " << world.desk.errors.front().message.text();
     EXPECT_EQ(nodes(world), "2 1") << kill_at;
     EXPECT_FALSE(has_journal()) << kill_at;
   }
@@ -142,7 +143,7 @@ TEST_F(PlanOfAddresses, EndsWithTheFirstDriveThatFails) {
   text_ = "node,new\n4,14\n1,11\n";
   ASSERT_TRUE(run(world));
   ASSERT_FALSE(world.desk.errors.empty());
-  EXPECT_NE(world.desk.errors.front().message.find("line 2"), std::string::npos);
+  EXPECT_NE(world.desk.errors.front().message.text().find("line 2"), std::string::npos);
   EXPECT_EQ(nodes(world), "1 2 3 4");
   EXPECT_FALSE(has_journal()) << "nothing was changed";
 }
@@ -190,7 +191,7 @@ TEST_F(PlanOfAddresses, WritesBitratesAtTheEndAndRestartsNobodyThen) {
   AddressWorld world("gsd600", {1, 2});
   text_ = "node,new,bitrate\n1,2,500k\n2,1,500k\n";
   ASSERT_TRUE(run(world));
-  EXPECT_TRUE(world.desk.errors.empty()) << world.desk.errors.front().message;
+  EXPECT_TRUE(world.desk.errors.empty()) << world.desk.errors.front().message.text();
   EXPECT_EQ(nodes(world), "2 1");
   EXPECT_EQ(world.held(0, "Pn0048"), 6U);
   EXPECT_EQ(world.held(1, "Pn0048"), 6U);

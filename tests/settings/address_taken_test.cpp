@@ -14,7 +14,7 @@ TEST(AddressTaken, ANodeIdThatAnswersIsRefused) {
   const auto free = refuse_taken(world.desk, to);
   ASSERT_FALSE(free);
   EXPECT_EQ(free.error().code, Errc::refused);
-  EXPECT_NE(free.error().message.find("it answers"), std::string::npos) << free.error().message;
+  EXPECT_NE(free.error().message.text().find("it answers"), std::string::npos) << free.error().message.text();
 }
 
 TEST(AddressTaken, ANodeIdWhoseNodeOnlySendsHeartbeatsIsRefused) {
@@ -24,7 +24,8 @@ TEST(AddressTaken, ANodeIdWhoseNodeOnlySendsHeartbeatsIsRefused) {
   const std::uint8_t to[] = {5};
   const auto free = refuse_taken(world.desk, to);
   ASSERT_FALSE(free);
-  EXPECT_NE(free.error().message.find("it sends heartbeats"), std::string::npos) << free.error().message;
+  EXPECT_NE(free.error().message.text().find("it sends heartbeats"), std::string::npos)
+      << free.error().message.text();
 }
 
 TEST(AddressTaken, ANodeIdWhoseNodeIsStoppedIsRefused) {
@@ -35,8 +36,8 @@ TEST(AddressTaken, ANodeIdWhoseNodeIsStoppedIsRefused) {
   const auto free = refuse_taken(world.desk, to);
   ASSERT_FALSE(free);
   EXPECT_EQ(free.error().code, Errc::refused);
-  EXPECT_NE(free.error().message.find("it says that it is stopped (NMT)"), std::string::npos)
-      << free.error().message;
+  EXPECT_NE(free.error().message.text().find("it says that it is stopped (NMT)"), std::string::npos)
+      << free.error().message.text();
 }
 
 /// Node guarding begins with the first request: a drive that guards its master's life would miss the next.

@@ -18,7 +18,7 @@ TEST(AddressTrouble, ADriveThatForgetsAtItsRestartIsToldOf) {
   const auto outcome = move_to(world, 3, 5);
   EXPECT_EQ(outcome.end, AddressEnd::failed);
   ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("forgot"), std::string::npos) << outcome.error->message;
+  EXPECT_NE(outcome.error->message.text().find("forgot"), std::string::npos) << outcome.error->message.text();
 }
 
 TEST(AddressTrouble, ADriveThatDoesNotTakeTheNmtCommandIsToBeSwitchedOff) {
@@ -34,7 +34,7 @@ TEST(AddressTrouble, ADriveThatDoesNotTakeTheNmtCommandIsToBeSwitchedOff) {
   const auto outcome = move_to(world, 3, 5);
   EXPECT_EQ(outcome.end, AddressEnd::awaits_restart);
   ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->hint.find("switch it off and on"), std::string::npos);
+  EXPECT_NE(outcome.error->hint.text().find("switch it off and on"), std::string::npos);
 }
 
 TEST(AddressTrouble, ADriveThatAnswersAtBothNodesIsToldOf) {
@@ -49,7 +49,8 @@ TEST(AddressTrouble, ADriveThatAnswersAtBothNodesIsToldOf) {
   const auto outcome = move_to(world, 3, 5);
   EXPECT_EQ(outcome.end, AddressEnd::failed);
   ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("node 3 still answers"), std::string::npos) << outcome.error->message;
+  EXPECT_NE(outcome.error->message.text().find("node 3 still answers"), std::string::npos)
+      << outcome.error->message.text();
 }
 
 TEST(AddressTrouble, AnotherDriveAtTheNewNodeIsNotTakenForIt) {
@@ -67,7 +68,8 @@ TEST(AddressTrouble, AnotherDriveAtTheNewNodeIsNotTakenForIt) {
   const auto outcome = move_to(world, 3, 5);
   EXPECT_EQ(outcome.end, AddressEnd::failed);
   ASSERT_TRUE(outcome.error);
-  EXPECT_NE(outcome.error->message.find("is another drive"), std::string::npos) << outcome.error->message;
+  EXPECT_NE(outcome.error->message.text().find("is another drive"), std::string::npos)
+      << outcome.error->message.text();
 }
 
 TEST(AddressTrouble, ADriveThatStaysAwayIsToldOf) {
@@ -79,8 +81,8 @@ TEST(AddressTrouble, ADriveThatStaysAwayIsToldOf) {
   EXPECT_EQ(outcome.end, AddressEnd::failed);
   ASSERT_TRUE(outcome.error);
   EXPECT_EQ(outcome.error->code, Errc::timeout);
-  EXPECT_NE(outcome.error->hint.find("switch it off and on, and look"), std::string::npos)
-      << outcome.error->hint;
+  EXPECT_NE(outcome.error->hint.text().find("switch it off and on, and look"), std::string::npos)
+      << outcome.error->hint.text();
 }
 
 TEST(AddressTrouble, ABusThatIsLostBehindTheWriteLeavesTheEndOpenAndSaysSo) {
@@ -92,8 +94,8 @@ TEST(AddressTrouble, ABusThatIsLostBehindTheWriteLeavesTheEndOpenAndSaysSo) {
   EXPECT_EQ(outcome.end, AddressEnd::failed);
   ASSERT_TRUE(outcome.error);
   EXPECT_EQ(outcome.error->code, Errc::bus);
-  EXPECT_NE(outcome.error->message.find("was told to be node 5"), std::string::npos)
-      << outcome.error->message;
+  EXPECT_NE(outcome.error->message.text().find("was told to be node 5"), std::string::npos)
+      << outcome.error->message.text();
 }
 
 TEST(AddressTrouble, ABusThatIsLostBehindTheRestartSaysTheSame) {
@@ -112,8 +114,8 @@ TEST(AddressTrouble, ABusThatIsLostBehindTheRestartSaysTheSame) {
     EXPECT_EQ(outcome.end, AddressEnd::failed);
     ASSERT_TRUE(outcome.error);
     EXPECT_EQ(outcome.error->code, Errc::bus);
-    EXPECT_NE(outcome.error->message.find("was told to be node 5"), std::string::npos)
-        << outcome.error->message;
+    EXPECT_NE(outcome.error->message.text().find("was told to be node 5"), std::string::npos)
+        << outcome.error->message.text();
   }
 }
 

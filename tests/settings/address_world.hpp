@@ -102,7 +102,7 @@ class AddressWorld {
   }
   std::string notices() const {
     std::string out;
-    for (const auto& notice : desk.notices) out += notice + "\n";
+    for (const auto& notice : desk.notices) out += notice.text() + "\n";
     return out;
   }
 
@@ -121,7 +121,7 @@ class AddressWorld {
 inline AddressOutcome move_to(AddressWorld& world, std::uint8_t from, std::uint8_t to,
                               AddressOptions options = {}) {
   const auto change = plan_address(world.desk, from, {.node = to});
-  EXPECT_TRUE(change) << change.error().message;
+  EXPECT_TRUE(change) << change.error().message.text();
   if (!change) return {};
   return change_address(world.desk, *change, options);
 }

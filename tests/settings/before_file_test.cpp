@@ -27,7 +27,7 @@ std::string text(const fs::path& file) { return read_file(file).value_or("(none)
 
 bool has_notice(const World& world, const std::string& part) {
   return std::any_of(world.notices.begin(), world.notices.end(),
-                     [&](const auto& notice) { return notice.find(part) != std::string::npos; });
+                     [&](const auto& notice) { return notice.text().find(part) != std::string::npos; });
 }
 
 /// A restore into this drive is killed in the middle of its writes; its old values are in `before`.
@@ -62,14 +62,15 @@ TEST(OldValues, OfADriveThatWasExchangedAreNotTakenUpByTheNewOne) {
   const auto refused = fresh.put(resume());
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::refused);
-  EXPECT_NE(refused.error().message.find("was of another drive: its serial number (1018h:04) differs"),
+  EXPECT_NE(refused.error().message.text().find("was of another drive: its serial number (1018h:04) differs"),
             std::string::npos)
-      << refused.error().message;
-  EXPECT_NE(refused.error().hint.find("leave --resume out"), std::string::npos) << refused.error().hint;
+      << refused.error().message.text();
+  EXPECT_NE(refused.error().hint.text().find("leave --resume out"), std::string::npos)
+      << refused.error().hint.text();
   EXPECT_EQ(fresh.values(), fresh.before);
   // Begun anew as the hint says, with a file of its own.
   const auto done = fresh.put({});
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   fresh.expect_values_of_backup();
   EXPECT_TRUE(has_notice(fresh, "the old values of node 1 are in " + second(fresh).string()));
   EXPECT_TRUE(has_notice(fresh, "is left as it is, its serial number (1018h:04) differs"));
@@ -78,7 +79,7 @@ TEST(OldValues, OfADriveThatWasExchangedAreNotTakenUpByTheNewOne) {
   EXPECT_FALSE(fs::exists(journal_of(second(fresh))));
   // The old one, mended: its own restore goes on.
   const auto resumed = old.put(resume());
-  ASSERT_TRUE(resumed) << resumed.error().message;
+  ASSERT_TRUE(resumed) << resumed.error().message.text();
   old.expect_values_of_backup();
   EXPECT_TRUE(has_notice(old, "the old values of node 1 are in " + old.saved().string()));
   EXPECT_EQ(text(old.saved()), kept);
@@ -95,14 +96,14 @@ TEST(OldValues, OfAnotherDriveAreNotWhatAnUndoWrites) {
   const auto refused = undo(fresh, {});
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::refused);
-  EXPECT_NE(
-      refused.error().message.find("old values of another drive, whose restore was interrupted: its serial"),
-      std::string::npos)
-      << refused.error().message;
+  EXPECT_NE(refused.error().message.text().find(
+                "old values of another drive, whose restore was interrupted: its serial"),
+            std::string::npos)
+      << refused.error().message.text();
   EXPECT_EQ(fresh.values(), wanted);
   // Whoever wants them all the same gets them as those of a backup; the journal is not of this drive.
   const auto done = undo(fresh, forced());
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   EXPECT_EQ(fresh.values(), before);
   EXPECT_EQ(text(journal_of(old.saved())), journal);
   ASSERT_TRUE(undo(old, {}));
@@ -117,7 +118,7 @@ TEST(OldValues, OfADriveWithASerialNumberAreItsOwnBehindAnotherAdapterToo) {
     cut_off(old);
     old.connect("slcan:/dev/ttyACM1@1M");
     const auto done = goes_on ? old.put(resume()) : undo(old, {});
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
     if (goes_on) old.expect_values_of_backup();
     if (!goes_on) {
       EXPECT_EQ(old.values(), before);
@@ -137,16 +138,16 @@ TEST(OldValues, OfADriveWithoutASerialNumberAreInDoubtOnAnotherBus) {
     const auto refused = old.put(how);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::refused);
-    EXPECT_NE(
-        refused.error().message.find("interrupted on sim, and nothing tells whether this is that drive"),
-        std::string::npos)
-        << refused.error().message;
+    EXPECT_NE(refused.error().message.text().find(
+                  "interrupted on sim, and nothing tells whether this is that drive"),
+              std::string::npos)
+        << refused.error().message.text();
   }
   const auto refused = undo(old, {});
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("the old values of the drive on sim, and nothing tells"),
+  EXPECT_NE(refused.error().message.text().find("the old values of the drive on sim, and nothing tells"),
             std::string::npos)
-      << refused.error().message;
+      << refused.error().message.text();
   EXPECT_EQ(old.values(), between);
   EXPECT_EQ(text(old.saved()), kept);
   // Who knows that it is that drive says so.
@@ -180,7 +181,8 @@ TEST(OldValues, OfTheDriveOnOneBusAreNotReplacedByThoseOfAnotherBus) {
   fs::remove(first.saved());
   const auto anew = cut.put({});
   ASSERT_FALSE(anew);
-  EXPECT_NE(anew.error().message.find("was interrupted"), std::string::npos) << anew.error().message;
+  EXPECT_NE(anew.error().message.text().find("was interrupted"), std::string::npos)
+      << anew.error().message.text();
   ASSERT_TRUE(cut.put(resume()));
   cut.expect_values_of_backup();
   EXPECT_FALSE(fs::exists(journal_of(second(cut))));
@@ -209,7 +211,7 @@ TEST(OldValues, AreNotedForOneBusWhileARestoreRunsOnAnother) {
     const Held same(world.saved(), "sim");
     const auto refused = world.put({});
     ASSERT_FALSE(refused);
-    EXPECT_NE(refused.error().message.find("another servoctl is restoring"), std::string::npos);
+    EXPECT_NE(refused.error().message.text().find("another servoctl is restoring"), std::string::npos);
     EXPECT_EQ(world.values(), world.before);
   }
   {
@@ -228,7 +230,7 @@ TEST(OldValues, AreNotedForOneBusWhileARestoreRunsOnAnother) {
     fs::remove(second(world));
     World third(kCase);
     const auto done = third.put({});
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
     EXPECT_TRUE(fs::exists(second(world)));
   }
 }
@@ -249,8 +251,8 @@ TEST(OldValues, ThatCannotBeReadAreNotReplacedAndTheirJournalIsNotTakenUp) {
     const auto refused = cut.put(how);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().code, Errc::file);
-    EXPECT_NE(refused.error().message.find("nothing tells of which drive"), std::string::npos)
-        << refused.error().message;
+    EXPECT_NE(refused.error().message.text().find("nothing tells of which drive"), std::string::npos)
+        << refused.error().message.text();
   }
   EXPECT_EQ(cut.values(), between);
 }

@@ -73,14 +73,14 @@ struct BitrateCell {
     std::vector<AddressChange> out;
     for (const auto node : nodes) {
       auto change = plan_address(world.desk, node, {.bitrate = 125'000});
-      EXPECT_TRUE(change) << change.error().message;
+      EXPECT_TRUE(change) << change.error().message.text();
       if (change) out.push_back(std::move(*change));
     }
     return out;
   }
   BitrateSwitch plan(std::span<const AddressChange> all, AddressOptions options = {}) {
     auto plan = plan_switch(world.desk, std::exchange(owned, nullptr), all, 125'000, options, true);
-    EXPECT_TRUE(plan) << plan.error().message;
+    EXPECT_TRUE(plan) << plan.error().message.text();
     return plan ? std::move(*plan) : BitrateSwitch{};
   }
   std::vector<AddressOutcome> run(AddressOptions options = {}) {

@@ -16,7 +16,7 @@ TEST_P(BitrateOf, DrivesAreRestartedByOneCommandAndFoundAtTheNewBitrate) {
   const auto out = cell.run();
   ASSERT_EQ(out.size(), 2U);
   for (const auto& each : out) {
-    EXPECT_EQ(each.end, AddressEnd::at_bitrate) << (each.error ? each.error->message : "");
+    EXPECT_EQ(each.end, AddressEnd::at_bitrate) << (each.error ? each.error->message.text() : "");
     EXPECT_FALSE(each.error);
   }
   EXPECT_EQ(cell.bitrate(), 125'000U);
@@ -42,7 +42,7 @@ TEST(BitrateSwitch, DrivesThatAreSwitchedOffAndOnAreWaitedForAtBothEnds) {
   };
   const auto out = cell.run({.unlock = true, .patience = 60s});
   for (const auto& each : out)
-    EXPECT_EQ(each.end, AddressEnd::at_bitrate) << (each.error ? each.error->message : "");
+    EXPECT_EQ(each.end, AddressEnd::at_bitrate) << (each.error ? each.error->message.text() : "");
   EXPECT_EQ(when_off, 250'000U) << "the interface stays while a drive is there";
   EXPECT_EQ(cell.bitrate(), 125'000U);
   for (const auto& frame : cell.world.sent) EXPECT_FALSE(frame.starts_with("000#8")) << frame;
@@ -54,8 +54,8 @@ TEST(BitrateSwitch, DrivesThatNobodySwitchesOffKeepTheInterfaceWithThem) {
   ASSERT_TRUE(out[0].error);
   EXPECT_EQ(out[0].end, AddressEnd::awaits_restart);
   EXPECT_EQ(out[0].error->code, Errc::negative);
-  EXPECT_NE(out[0].error->message.find("can0 stays at 250 kbit/s"), std::string::npos)
-      << out[0].error->message;
+  EXPECT_NE(out[0].error->message.text().find("can0 stays at 250 kbit/s"), std::string::npos)
+      << out[0].error->message.text();
   EXPECT_TRUE(cell.link->done.empty());
 }
 
@@ -75,9 +75,9 @@ TEST(BitrateSwitch, WhereNoneTookItTheInterfaceGoesBackToThem) {
   const auto out = cell.run();
   ASSERT_TRUE(out[0].error);
   EXPECT_EQ(out[0].end, AddressEnd::awaits_restart);
-  EXPECT_NE(out[0].error->message.find("still answers at 250 kbit/s"), std::string::npos)
-      << out[0].error->message;
-  EXPECT_NE(out[0].error->hint.find("--wait 5min"), std::string::npos) << out[0].error->hint;
+  EXPECT_NE(out[0].error->message.text().find("still answers at 250 kbit/s"), std::string::npos)
+      << out[0].error->message.text();
+  EXPECT_NE(out[0].error->hint.text().find("--wait 5min"), std::string::npos) << out[0].error->hint.text();
   EXPECT_EQ(cell.bitrate(), 250'000U);
   EXPECT_TRUE(cell.link->now.up);
 }
@@ -99,10 +99,11 @@ TEST(BitrateSwitch, WhereNobodyAnswersAtEitherTheInterfaceStaysAtTheNewOne) {
     ASSERT_TRUE(out[0].error);
     EXPECT_EQ(out[0].end, AddressEnd::failed);
     EXPECT_EQ(out[0].error->code, Errc::timeout);
-    EXPECT_NE(out[0].error->message.find("no drive answers at 125 kbit/s"), std::string::npos)
-        << out[0].error->message;
-    EXPECT_NE(out[0].error->hint.find(refuses ? "`bus status` shows" : "can0 has it now"), std::string::npos)
-        << out[0].error->hint;
+    EXPECT_NE(out[0].error->message.text().find("no drive answers at 125 kbit/s"), std::string::npos)
+        << out[0].error->message.text();
+    EXPECT_NE(out[0].error->hint.text().find(refuses ? "`bus status` shows" : "can0 has it now"),
+              std::string::npos)
+        << out[0].error->hint.text();
     EXPECT_EQ(cell.bitrate(), refuses ? 250'000U : 125'000U);
   }
 }
@@ -118,21 +119,21 @@ TEST(BitrateSwitch, CtrlCBehindTheCommandIsHeardWhereTheInterfaceHasFollowed) {
   const auto out = behind.run();
   ASSERT_TRUE(out[0].error);
   EXPECT_EQ(out[0].error->code, Errc::interrupted);
-  EXPECT_NE(out[0].error->message.find("can0 is at 125 kbit/s now; where the drives are was not seen"),
+  EXPECT_NE(out[0].error->message.text().find("can0 is at 125 kbit/s now; where the drives are was not seen"),
             std::string::npos)
-      << out[0].error->message;
+      << out[0].error->message.text();
 }
 
 TEST(BitrateSwitch, OneThatIsMissingIsNamedAndTheOthersAreFound) {
   BitrateCell cell("gsd600");
   cell.wire->deaf = {4};
   const auto out = cell.run();
-  EXPECT_EQ(out[0].end, AddressEnd::at_bitrate) << (out[0].error ? out[0].error->message : "");
+  EXPECT_EQ(out[0].end, AddressEnd::at_bitrate) << (out[0].error ? out[0].error->message.text() : "");
   ASSERT_TRUE(out[1].error);
   EXPECT_EQ(out[1].end, AddressEnd::failed);
   EXPECT_EQ(out[1].error->code, Errc::timeout);
-  EXPECT_NE(out[1].error->message.find("no answer at 125 kbit/s"), std::string::npos)
-      << out[1].error->message;
+  EXPECT_NE(out[1].error->message.text().find("no answer at 125 kbit/s"), std::string::npos)
+      << out[1].error->message.text();
   EXPECT_EQ(cell.bitrate(), 125'000U) << "where most of them are";
 }
 
@@ -142,9 +143,10 @@ TEST(BitrateSwitch, AnInterfaceThatCannotFollowSaysWhereTheDrivesAre) {
   const auto out = cell.run();
   ASSERT_TRUE(out[0].error);
   EXPECT_EQ(out[0].end, AddressEnd::failed);
-  EXPECT_NE(out[0].error->message.find("the drives start at 125 kbit/s now, and can0 could not follow"),
-            std::string::npos)
-      << out[0].error->message;
+  EXPECT_NE(
+      out[0].error->message.text().find("the drives start at 125 kbit/s now, and can0 could not follow"),
+      std::string::npos)
+      << out[0].error->message.text();
   EXPECT_EQ(cell.bitrate(), 250'000U);
 }
 
@@ -159,7 +161,7 @@ TEST(BitrateSwitch, DrivesThatHaveItForTheirNextStartAreOnlyRestarted) {
   std::vector<AddressOutcome> out(2);
   follow_bitrate(cell.world.desk, follower, all, out, {});
   for (const auto& each : out)
-    EXPECT_EQ(each.end, AddressEnd::at_bitrate) << (each.error ? each.error->message : "");
+    EXPECT_EQ(each.end, AddressEnd::at_bitrate) << (each.error ? each.error->message.text() : "");
   EXPECT_EQ(cell.world.count("000#8100"), 1U);
 }
 
@@ -167,7 +169,7 @@ TEST(BitrateSwitch, ADriveWithABitrateForItsNextStartIsNotRestartedAloneToMove) 
   BitrateCell cell("gsd600");
   for (const auto& change : cell.changes()) (void)change_address(cell.world.desk, change, {});
   const auto change = plan_address(cell.world.desk, 3, {.node = 5, .bitrate = 125'000});
-  ASSERT_TRUE(change) << change.error().message;
+  ASSERT_TRUE(change) << change.error().message.text();
   EXPECT_EQ(change_address(cell.world.desk, *change, {}).end, AddressEnd::awaits_restart);
   EXPECT_EQ(cell.world.count("000#8103"), 0U);
 }
@@ -180,11 +182,11 @@ TEST(BitrateSwitch, ADriveWithABitrateForItsNextStartIsNotMovedByItsNumberAlone)
   ASSERT_FALSE(change);
   EXPECT_EQ(change.error().code, Errc::refused);
   EXPECT_EQ(
-      change.error().message,
+      change.error().message.text(),
       "node 3, object 0x2000:31h: it starts at 125 kbit/s next, and its bus has 250 kbit/s: to move it is to start anew, and it "
       "would be gone");
-  EXPECT_NE(change.error().hint.find("address --bitrate 250000 -n 3"), std::string::npos)
-      << change.error().hint;
+  EXPECT_NE(change.error().hint.text().find("address --bitrate 250000 -n 3"), std::string::npos)
+      << change.error().hint.text();
   for (const auto& frame : cell.world.sent) EXPECT_FALSE(frame.starts_with("603#2")) << frame;
   EXPECT_TRUE(plan_address(cell.world.desk, 3, {.node = 5, .bus_bitrate = 125'000})) << "it fits its bus";
   EXPECT_TRUE(plan_address(cell.world.desk, 3, {.node = 5, .bitrate = 125'000, .bus_bitrate = 250'000}))

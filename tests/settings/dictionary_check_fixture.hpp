@@ -45,7 +45,7 @@ class DictionaryCheckTest : public testing::Test {
   }
   Found found(const CheckOptions& options = {}) {
     const auto checked = check(options);
-    EXPECT_TRUE(checked) << checked.error().message;
+    EXPECT_TRUE(checked) << checked.error().message.text();
     Found out;
     if (checked)
       for (const auto& each : checked->findings) out.emplace(each.object, each.difference);

@@ -43,7 +43,8 @@ TEST_F(DictionaryCheckTest, AnEmergencyEndsTheReads) {
   const auto checked = check();
   ASSERT_FALSE(checked);
   EXPECT_EQ(checked.error().code, Errc::refused);
-  EXPECT_NE(checked.error().message.find("EMCY 8130h"), std::string::npos) << checked.error().message;
+  EXPECT_NE(checked.error().message.text().find("EMCY 8130h"), std::string::npos)
+      << checked.error().message.text();
   EXPECT_TRUE(check({.listed_only = true}));
 }
 
@@ -61,7 +62,7 @@ TEST_F(DictionaryCheckTest, WhatIsNotListedIsNotAskedForWhileTheDriveIsEnabled) 
   ASSERT_TRUE(checked);
   EXPECT_EQ(checked->probed, 0U);
   ASSERT_EQ(desk.notices.size(), 1U);
-  EXPECT_NE(desk.notices[0].find("is enabled"), std::string::npos);
+  EXPECT_NE(desk.notices[0].text().find("is enabled"), std::string::npos);
 }
 
 TEST_F(DictionaryCheckTest, AnswersOfAlwaysFourBytesAreNoOtherSizes) {
@@ -69,7 +70,7 @@ TEST_F(DictionaryCheckTest, AnswersOfAlwaysFourBytesAreNoOtherSizes) {
     if (bytes.size() < 4) bytes.resize(4);
   EXPECT_EQ(listed_text(found()), "");
   ASSERT_FALSE(desk.notices.empty());
-  EXPECT_NE(desk.notices[0].find("four bytes"), std::string::npos);
+  EXPECT_NE(desk.notices[0].text().find("four bytes"), std::string::npos);
 }
 
 TEST_F(DictionaryCheckTest, AnAnswerThatIsLostOnceIsNoDifference) {
@@ -110,7 +111,7 @@ TEST_F(DictionaryCheckTest, ADriveThatAnswersWhateverItIsAskedForIsNotProbed) {
   ASSERT_TRUE(checked);
   EXPECT_EQ(checked->probed, 0U);
   ASSERT_EQ(desk.notices.size(), 1U);
-  EXPECT_NE(desk.notices[0].find("answers reads of any object"), std::string::npos);
+  EXPECT_NE(desk.notices[0].text().find("answers reads of any object"), std::string::npos);
 }
 
 TEST_F(DictionaryCheckTest, JunitHasAFailureForANodeThatWasNotCompared) {

@@ -27,7 +27,7 @@ TEST(EqualValues, OneThatAnotherWriteOfTheLineAltersIsWrittenAfterAll) {
     ASSERT_EQ(load_le(world.drives[0]->value(kSpeedGain)), 400U);
   };
   ASSERT_TRUE(write_changes(world.desk, changes, {.read_back = true, .leave_equal = true}));
-  EXPECT_TRUE(world.desk.errors.empty()) << world.desk.errors.front().message;
+  EXPECT_TRUE(world.desk.errors.empty()) << world.desk.errors.front().message.text();
   EXPECT_EQ(load_le(world.drives[0]->value(kSpeedGain)), 600U);
   EXPECT_EQ(load_le(world.drives[0]->value(kPositionGain)), 500U);
 }

@@ -44,7 +44,7 @@ class TrialWorld : public World {
     return now == flash;
   }
   bool is_told(std::string_view text) const {
-    const auto has = [&](const auto& message) { return message.find(text) != std::string::npos; };
+    const auto has = [&](const auto& message) { return message.text().find(text) != std::string::npos; };
     return std::any_of(notices.begin(), notices.end(), has) ||
            std::any_of(errors.begin(), errors.end(), [&](const Error& error) { return has(error.message); });
   }
@@ -84,7 +84,7 @@ void expect_truth_at_every_step(const Family& family, const RestoringOptions& ho
     trouble.*kind = step;
     const auto done = world.put(how, trouble);
     if (!done) {
-      EXPECT_TRUE(world.expect_no_trial_after_power_off()) << done.error().message;
+      EXPECT_TRUE(world.expect_no_trial_after_power_off()) << done.error().message.text();
       continue;
     }
     if (!done->failed) {
@@ -108,7 +108,7 @@ void expect_truth_at_every_step(const Family& family, const RestoringOptions& ho
     RestoringOptions resume;
     resume.resume = true;
     const auto resumed = world.put(resume);
-    ASSERT_TRUE(resumed) << resumed.error().message;
+    ASSERT_TRUE(resumed) << resumed.error().message.text();
     EXPECT_FALSE(world.is_cut_off());
     world.power_cycle();
     EXPECT_EQ(world.values(), world.wanted);
@@ -135,7 +135,7 @@ TEST_P(FlashTrial, GoesBackToTheRamByTheFileFromBefore) {
     if (!world.is_cut_off()) continue;
     ++undone;
     const auto back = read_backup(world.saved());
-    ASSERT_TRUE(back) << back.error().message;
+    ASSERT_TRUE(back) << back.error().message.text();
     ASSERT_TRUE(world.run(*back, "before", world.saved().string() + ".before-node-1.json", {}, -1,
                           journal_of(world.saved())));
     EXPECT_FALSE(world.is_cut_off());
@@ -173,7 +173,7 @@ TEST_P(FlashTrial, NothingIsWrittenWhereTheSwitchIsAcknowledgedAndNotTaken) {
   trouble.stuck = world.memory_switch();
   const auto done = world.put(keep(), trouble);
   const bool told = done ? world.is_told("did not take it: values would go to its RAM")
-                         : done.error().message.find("did not take it") != std::string::npos;
+                         : done.error().message.text().find("did not take it") != std::string::npos;
   EXPECT_TRUE(told);
   EXPECT_TRUE(!done || done->failed);
   EXPECT_EQ(world.values(), world.before);

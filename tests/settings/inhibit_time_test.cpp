@@ -20,8 +20,8 @@ TEST_P(InhibitTimeAlone, IsRestoredWhileThePdoIsValid) {
   const auto before = world.read({kCobId}).at(kCobId);
   ASSERT_EQ(load_le(before) & canopen::kPdoInvalid, 0U);
   const auto done = world.put({});
-  ASSERT_TRUE(done) << done.error().message;
-  for (const auto& error : world.errors) ADD_FAILURE() << error.message;
+  ASSERT_TRUE(done) << done.error().message.text();
+  for (const auto& error : world.errors) ADD_FAILURE() << error.message.text();
   world.expect_values_of_backup();
   EXPECT_EQ(world.read({kCobId}).at(kCobId), before);
 }
@@ -32,9 +32,10 @@ TEST(InhibitTime, IsKeptWithoutANoticeOfTheCobId) {
   RestoringOptions keep;
   keep.keep = true;
   const auto done = world.put(keep);
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   world.expect_values_of_backup();
-  for (const auto& notice : world.notices) EXPECT_EQ(notice.find("0x1800:1"), std::string::npos) << notice;
+  for (const auto& notice : world.notices)
+    EXPECT_EQ(notice.text().find("0x1800:1"), std::string::npos) << notice.text();
 }
 
 TEST_P(InhibitTimeAlone, LeavesNoPdoInvalidWhereItsRestoreIsCutOff) {
@@ -59,7 +60,7 @@ TEST_P(InhibitTimeAlone, LeavesNoPdoInvalidWhereItsRestoreIsCutOff) {
       world.expect_values_of_backup();
     } else {
       const auto back = read_backup(world.saved());
-      ASSERT_TRUE(back) << back.error().message;
+      ASSERT_TRUE(back) << back.error().message.text();
       ASSERT_TRUE(world.run(*back, "before", world.saved().string() + ".before-node-1.json", {}, -1,
                             journal_of(world.saved())));
       EXPECT_EQ(world.values(), world.before);

@@ -25,21 +25,23 @@ TEST_F(LearningLimitsTest, AnEmergencyStopsTheScanAndItsReadsAreLeftOutOfTheNext
   const auto ended = learn(short_range);
   ASSERT_FALSE(ended);
   EXPECT_EQ(ended.error().code, Errc::refused);
-  EXPECT_NE(ended.error().message.find("EMCY 8130h"), std::string::npos) << ended.error().message;
-  EXPECT_NE(ended.error().hint.find("leaves out 2A00h to 2A0Fh"), std::string::npos) << ended.error().hint;
+  EXPECT_NE(ended.error().message.text().find("EMCY 8130h"), std::string::npos)
+      << ended.error().message.text();
+  EXPECT_NE(ended.error().hint.text().find("leaves out 2A00h to 2A0Fh"), std::string::npos)
+      << ended.error().hint.text();
   EXPECT_TRUE(std::filesystem::exists(scan_file(file)));
   begin_anew();
   node->objects.values[{0x2A20, 0}] = {1, 0};
   node->alarming = {{0x2A00, 0}};
   const auto done = learn(short_range);
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   EXPECT_NE(report::to_json(report::Value(*done)).find("an EMCY came"), std::string::npos);
   const auto written = read_file(file);
   ASSERT_TRUE(written);
   EXPECT_NE(written->find("Indexes not read: 2A00-2A0F."), std::string::npos)
       << "whoever has the file alone knows it";
-  EXPECT_NE(desk.notices.front().find("goes on at 32 of 65 indexes"), std::string::npos)
-      << desk.notices.front();
+  EXPECT_NE(desk.notices.front().text().find("goes on at 32 of 65 indexes"), std::string::npos)
+      << desk.notices.front().text();
 }
 
 TEST_F(LearningLimitsTest, WhatWasNotReadIsNotSaidToBeMissing) {
@@ -50,8 +52,8 @@ TEST_F(LearningLimitsTest, WhatWasNotReadIsNotSaidToBeMissing) {
   node->alarming = {{0x2A00, 0}};
   const auto done = learn(short_range);
   ASSERT_FALSE(done);
-  EXPECT_NE(done.error().message.find("indexes 2A00-2A0F were not read"), std::string::npos)
-      << done.error().message;
+  EXPECT_NE(done.error().message.text().find("indexes 2A00-2A0F were not read"), std::string::npos)
+      << done.error().message.text();
 }
 
 TEST_F(LearningLimitsTest, AnEmergencyToTheStoredEdsEndsIt) {
@@ -86,7 +88,8 @@ TEST_F(LearningLimitsTest, ARestartOrAnotherIdentityEndsTheScan) {
   node->booting = {{0x2A00, 0}};
   const auto ended = learn();
   ASSERT_FALSE(ended);
-  EXPECT_NE(ended.error().message.find("restarted"), std::string::npos) << ended.error().message;
+  EXPECT_NE(ended.error().message.text().find("restarted"), std::string::npos)
+      << ended.error().message.text();
   EXPECT_TRUE(std::filesystem::exists(scan_file(file)));
   std::filesystem::remove(scan_file(file));
   begin_anew();
@@ -122,7 +125,7 @@ TEST_F(LearningLimitsTest, ManySilentIndexesEndTheScan) {
   const auto ended = learn({.ranges = {{0x2E00, 0x2FFF}}, .scans = true});
   ASSERT_FALSE(ended);
   EXPECT_EQ(ended.error().code, Errc::timeout);
-  EXPECT_NE(ended.error().message.find("1000h"), std::string::npos) << ended.error().message;
+  EXPECT_NE(ended.error().message.text().find("1000h"), std::string::npos) << ended.error().message.text();
   EXPECT_TRUE(std::filesystem::exists(scan_file(file)));
 }
 
@@ -143,7 +146,7 @@ TEST_F(LearningLimitsTest, WhatIsSentWithoutEndIsGivenUpAndLeftOut) {
     node->endless = {{{0x2F00, 0}, bytes}};
     node->objects.values[{0x2F01, 0}] = Bytes(kTooLong, 1);
     const auto done = learn({.ranges = {{0x1000, 0x1018}, {0x2F00, 0x2F08}}, .scans = true});
-    ASSERT_TRUE(done) << done.error().message;
+    ASSERT_TRUE(done) << done.error().message.text();
     EXPECT_LT(node->requests, kTooLong / 7) << "requests for segments";
     const auto json = report::to_json(report::Value(*done));
     EXPECT_NE(json.find(R"("left_out":[{"index":12032,"sub":0,)"), std::string::npos) << json;
@@ -156,9 +159,9 @@ TEST_F(LearningLimitsTest, WhatIsSentWithoutEndIsGivenUpAndLeftOut) {
 TEST_F(LearningLimitsTest, AStoredEdsWithoutEndIsNotUsed) {
   node->endless = {{{0x1021, 0}, 7}};
   const auto done = learn({});
-  ASSERT_TRUE(done) << done.error().message;
-  EXPECT_NE(desk.notices.front().find("it sends more than 4194304 bytes"), std::string::npos)
-      << desk.notices.front();
+  ASSERT_TRUE(done) << done.error().message.text();
+  EXPECT_NE(desk.notices.front().text().find("it sends more than 4194304 bytes"), std::string::npos)
+      << desk.notices.front().text();
 }
 
 TEST_F(LearningLimitsTest, TheReactionToAnAlarmOfTheScanIsAwaited) {
@@ -182,11 +185,12 @@ TEST_F(LearningLimitsTest, TheReactionToAnAlarmOfTheScanIsAwaited) {
     const auto done = learn_sheet(desk, 1, file, options);
     EXPECT_EQ(done.has_value(), looks == 3);
     if (done) {
-      EXPECT_NE(desk.notices.back().find("may be in fault"), std::string::npos) << desk.notices.back();
+      EXPECT_NE(desk.notices.back().text().find("may be in fault"), std::string::npos)
+          << desk.notices.back().text();
       continue;
     }
-    EXPECT_NE(done.error().message.find("still reacts to a fault"), std::string::npos)
-        << done.error().message;
+    EXPECT_NE(done.error().message.text().find("still reacts to a fault"), std::string::npos)
+        << done.error().message.text();
     EXPECT_EQ(std::count(node->asked.begin(), node->asked.end(), ObjectAddress{0x2A10, 0}), 0);
   }
 }

@@ -37,7 +37,7 @@ TEST_F(LearningTest, FindsEachObjectWithItsSizeAndWhetherItCanBeRead) {
 TEST_F(LearningTest, WhatIsLearnedIsTrueOfTheDrive) {
   const auto sheet = learned();
   const auto check = check_dictionary(desk, 1, sheet, {});
-  ASSERT_TRUE(check) << check.error().message;
+  ASSERT_TRUE(check) << check.error().message.text();
   for (const auto& found : check->findings)
     ADD_FAILURE() << to_string(found.object) << " " << name(found.difference) << " " << found.file << " "
                   << found.drive;
@@ -55,7 +55,7 @@ TEST_F(LearningTest, OnlyTheAnswerOfImprobableIndexesMeansThatThereIsNoObject) {
     node->objects.refusals[{index, 0}] = 0x0800'0022;
   }
   const auto done = learn(options);
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   const auto json = report::to_json(report::Value(*done));
   for (const unsigned index : {0x2100U, 0x212FU})
     EXPECT_NE(json.find(fmt::format(R"("index":{},"sub":0)", index)), std::string::npos) << index;
@@ -170,10 +170,11 @@ TEST_F(LearningTest, AStoredEdsIsTakenAsItIs) {
   EXPECT_NE(content_of(file), stored);
   node->objects.values[{0x1021, 0}] = {'P', 'K', 3, 4, 0, 0};
   EXPECT_TRUE(learn({.ranges = {{0x1000, 0x1018}}}));
-  EXPECT_NE(desk.notices.front().find("are no EDS"), std::string::npos) << desk.notices.front();
+  EXPECT_NE(desk.notices.front().text().find("are no EDS"), std::string::npos) << desk.notices.front().text();
   node->objects.refusals[{0x1021, 0}] = 0x0800'0021;
   EXPECT_TRUE(learn({.ranges = {{0x1000, 0x1018}}}));
-  EXPECT_NE(desk.notices.front().find("(1021h) is not used"), std::string::npos) << desk.notices.front();
+  EXPECT_NE(desk.notices.front().text().find("(1021h) is not used"), std::string::npos)
+      << desk.notices.front().text();
 }
 
 TEST_F(LearningTest, TheStoredEdsOfAnotherProductIsNotTaken) {
@@ -182,14 +183,15 @@ TEST_F(LearningTest, TheStoredEdsOfAnotherProductIsNotTaken) {
   node->objects.values[{0x1021, 0}] = Bytes(stored.begin(), stored.end());
   EXPECT_TRUE(learn({.ranges = {{0x1000, 0x1018}}}));
   EXPECT_NE(content_of(file), stored);
-  EXPECT_NE(desk.notices.front().find("another one"), std::string::npos) << desk.notices.front();
+  EXPECT_NE(desk.notices.front().text().find("another one"), std::string::npos)
+      << desk.notices.front().text();
 }
 
 TEST_F(LearningTest, ObjectsThatRefuseToBeReadAreLeftOutAndTold) {
   node->silent = {{0x2A00, 0}};
   node->objects.values[{0x2A00, 0}] = {0};
   const auto done = learn({.ranges = {{0x1000, 0x1018}, {0x29F0, 0x2A10}}});
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   const auto json = report::to_json(report::Value(*done));
   EXPECT_NE(json.find(R"("left_out":[{"index":10752,"sub":0,"reason":"no answer"}])"), std::string::npos)
       << json;

@@ -57,7 +57,7 @@ class LearningWorld : public testing::Test {
   }
   od::EdsFile learned(const LearnOptions& options = {}) {
     const auto done = learn(options);
-    EXPECT_TRUE(done) << done.error().message;
+    EXPECT_TRUE(done) << done.error().message.text();
     auto out = od::read_eds(content_of(file), "drive.eds");
     EXPECT_TRUE(out);
     EXPECT_EQ(out->error_count() + out->warning_count(), 0U);

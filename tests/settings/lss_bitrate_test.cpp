@@ -86,7 +86,7 @@ class LssBitrate : public session::LssWorld {
   }
   BitrateSwitch plan(const LssBitrateChange& change, bool may = true) {
     auto out = plan_lss_switch(std::move(owned), change, may);
-    EXPECT_TRUE(out) << out.error().message;
+    EXPECT_TRUE(out) << out.error().message.text();
     if (out) {
       EXPECT_TRUE(leave_nobody_behind(*session, change, *out));
     }
@@ -96,7 +96,7 @@ class LssBitrate : public session::LssWorld {
     follower = plan(change);
     EXPECT_TRUE(follower.follows()) << follower.why_not;
     const auto out = set_lss_bitrate(desk, change, follower);
-    EXPECT_TRUE(out) << out.error().message;
+    EXPECT_TRUE(out) << out.error().message.text();
     return out ? *out : LssBitrateOutcome{};
   }
   std::uint32_t bitrate() const { return link->now.bitrate.value_or(0); }
@@ -114,7 +114,7 @@ TEST_F(LssBitrate, TheInterfaceGoesWithAllSlavesBetweenTheTwoSilences) {
   build("gsd600@3,sv2@4,sv2@255?lss");
   const auto begin = session->now();
   const auto out = run(everybody());
-  EXPECT_FALSE(out.error) << out.error->message;
+  EXPECT_FALSE(out.error) << out.error->message.text();
   EXPECT_EQ(out.slaves, 3U);
   EXPECT_EQ(bitrate(), 250'000U);
   EXPECT_EQ(link->done, (std::vector<std::string>{" down", " up type can bitrate 250000"}));
@@ -131,7 +131,7 @@ TEST_F(LssBitrate, TheInterfaceGoesWithTheOnlyNode) {
   auto change = everybody();
   change.all = false;
   const auto out = run(change);
-  EXPECT_FALSE(out.error) << out.error->message;
+  EXPECT_FALSE(out.error) << out.error->message.text();
   EXPECT_TRUE(out.address);
   EXPECT_EQ(bitrate(), 250'000U);
 }
@@ -142,7 +142,8 @@ TEST_F(LssBitrate, WhereNoSlaveTookItTheInterfaceGoesBackToThem) {
   const auto out = run(everybody());
   ASSERT_TRUE(out.error);
   EXPECT_EQ(out.error->code, Errc::negative);
-  EXPECT_NE(out.error->message.find("still answer at 500 kbit/s"), std::string::npos) << out.error->message;
+  EXPECT_NE(out.error->message.text().find("still answer at 500 kbit/s"), std::string::npos)
+      << out.error->message.text();
   EXPECT_EQ(bitrate(), 500'000U);
   EXPECT_TRUE(link->now.up);
   EXPECT_TRUE(all_wait());
@@ -156,8 +157,8 @@ TEST_F(LssBitrate, AnotherMasterAtWorkIsTheErrorAndTheInterfaceStays) {
   };
   const auto out = set_lss_bitrate(desk, everybody(), follower);
   ASSERT_TRUE(out && out->error);
-  EXPECT_NE(out->error->message.find("whether the LSS slaves are was not seen"), std::string::npos)
-      << out->error->message;
+  EXPECT_NE(out->error->message.text().find("whether the LSS slaves are was not seen"), std::string::npos)
+      << out->error->message.text();
   EXPECT_EQ(bitrate(), 250'000U) << "where the slaves are";
 }
 
@@ -166,7 +167,7 @@ TEST_F(LssBitrate, OneThatStayedIsTold) {
   drives[1]->ignores = true;
   const auto out = run(everybody());
   ASSERT_TRUE(out.error);
-  EXPECT_EQ(out.error->message, "of 2 LSS slaves 1 answer at 250 kbit/s");
+  EXPECT_EQ(out.error->message.text(), "of 2 LSS slaves 1 answer at 250 kbit/s");
   EXPECT_EQ(bitrate(), 250'000U) << "where most of them are";
 }
 
@@ -175,9 +176,9 @@ TEST_F(LssBitrate, AnInterfaceThatCannotFollowSaysWhereTheSlavesAre) {
   link->refuses = [](const can::LinkChange& change) { return change.bitrate == 250'000U ? EINVAL : 0; };
   const auto out = run(everybody());
   ASSERT_TRUE(out.error);
-  EXPECT_NE(out.error->message.find("the LSS slaves are at 250 kbit/s now, and can0 could not follow"),
+  EXPECT_NE(out.error->message.text().find("the LSS slaves are at 250 kbit/s now, and can0 could not follow"),
             std::string::npos)
-      << out.error->message;
+      << out.error->message.text();
   EXPECT_EQ(bitrate(), 500'000U);
 }
 
@@ -188,7 +189,8 @@ TEST_F(LssBitrate, CtrlCBehindTheActivationIsHeardWhenTheInterfaceHasFollowed) {
   ASSERT_TRUE(out.error);
   EXPECT_EQ(out.error->code, Errc::interrupted);
   EXPECT_EQ(bitrate(), 250'000U);
-  EXPECT_NE(out.error->message.find("can0 is at 250 kbit/s now"), std::string::npos) << out.error->message;
+  EXPECT_NE(out.error->message.text().find("can0 is at 250 kbit/s now"), std::string::npos)
+      << out.error->message.text();
 }
 
 TEST_F(LssBitrate, CtrlCBeforeTheActivationLeavesAllAsItWas) {

@@ -29,7 +29,7 @@ class LssNode : public session::LssWorld {
     desk.session = session.get();
     const LssNodeChange change{{}, to, keep};
     const auto slave = look_at_lss_slave(desk, change);
-    EXPECT_TRUE(slave) << slave.error().message;
+    EXPECT_TRUE(slave) << slave.error().message.text();
     return slave ? give_lss_node(desk, *slave, change) : LssNodeOutcome{};
   }
   show::Desk desk;
@@ -39,7 +39,7 @@ class LssNode : public session::LssWorld {
 TEST_F(LssNode, IsFoundByItWithItsIdentity) {
   build("sv2@255?lss");
   const auto outcome = give(5, true);
-  EXPECT_FALSE(outcome.error) << outcome.error->message;
+  EXPECT_FALSE(outcome.error) << outcome.error->message.text();
   EXPECT_TRUE(outcome.done && outcome.taken);
   EXPECT_EQ(outcome.kept, true);
   EXPECT_EQ(cell.drives[0]->node(), 5);
@@ -64,8 +64,8 @@ TEST_F(LssNode, IsTheOldOneAgainWhereStoringFails) {
   ASSERT_TRUE(outcome.error);
   EXPECT_EQ(outcome.result, "not changed");
   EXPECT_EQ(outcome.kept, false);
-  EXPECT_NE(outcome.error->message.find("its node-ID is the old one again"), std::string::npos)
-      << outcome.error->message;
+  EXPECT_NE(outcome.error->message.text().find("its node-ID is the old one again"), std::string::npos)
+      << outcome.error->message.text();
   EXPECT_TRUE(all_wait());
   (void)bus.send(*can::parse_frame("000#8203"));
   (void)session->wait([] { return false; }, session->now() + 1s);
@@ -93,7 +93,8 @@ TEST_F(LssNode, ASlaveThatConfirmsOneAndTakesAnotherIsFound) {
   ASSERT_TRUE(outcome.error);
   EXPECT_FALSE(outcome.done);
   EXPECT_EQ(outcome.strayed, 6);
-  EXPECT_EQ(outcome.error->message, "node 6: it has the identity of the LSS slave that confirmed node-ID 5");
+  EXPECT_EQ(outcome.error->message.text(),
+            "node 6: it has the identity of the LSS slave that confirmed node-ID 5");
 }
 
 TEST_F(LssNode, AfterCtrlCNothingIsWritten) {
@@ -134,7 +135,7 @@ TEST_F(LssNode, ThatIsTakenAwayIsSeenInASlaveThatDoesNotSayThatItHasNone) {
     if (frame.data[0] == 0x50) frame.data[0] = 0;
   };
   const auto outcome = give(canopen::kUnconfigured);
-  EXPECT_FALSE(outcome.error) << outcome.error->message;
+  EXPECT_FALSE(outcome.error) << outcome.error->message.text();
   EXPECT_EQ(outcome.result, "without a node-ID now");
   EXPECT_TRUE(all_wait());
 }
@@ -158,9 +159,9 @@ TEST_F(LssNode, IsNotGivenToOneOfTwoDrivesWhileEitherIsEnergised) {
     const auto slave = look_at_lss_slave(desk, {address(*first.drives[0]), 5, false});
     ASSERT_FALSE(slave);
     EXPECT_EQ(slave.error().code, Errc::refused);
-    EXPECT_NE(slave.error().message.find("two drives have this node-ID, and one is energised"),
+    EXPECT_NE(slave.error().message.text().find("two drives have this node-ID, and one is energised"),
               std::string::npos)
-        << slave.error().message;
+        << slave.error().message.text();
     session.reset();
   }
 }
@@ -170,14 +171,15 @@ TEST_F(LssNode, IsGivenToOneOfTwoDrivesThatHaveNoPower) {
   const auto& namesake = add_namesake("gsd600@1");
   const LssNodeChange change{address(*cell.drives[0]), 5, false};
   const auto slave = look_at_lss_slave(desk, change);
-  ASSERT_TRUE(slave) << slave.error().message;
+  ASSERT_TRUE(slave) << slave.error().message.text();
   EXPECT_NE(shared_lss_node(*session, *slave), "") << "the question names it";
   const auto outcome = give_lss_node(desk, *slave, change);
-  EXPECT_EQ(outcome.result, "moved") << (outcome.error ? outcome.error->message : "");
+  EXPECT_EQ(outcome.result, "moved") << (outcome.error ? outcome.error->message.text() : "");
   EXPECT_EQ(cell.drives[0]->node(), 5);
   EXPECT_EQ(namesake.node(), 1);
   ASSERT_EQ(desk.notices.size(), 1U) << "it is told, where nobody was asked, too";
-  EXPECT_TRUE(desk.notices.front().starts_with("node 1: the other drive of this node-ID was reset as well"));
+  EXPECT_TRUE(
+      desk.notices.front().text().starts_with("node 1: the other drive of this node-ID was reset as well"));
 }
 
 TEST_F(LssNode, IsTakenFromOneOfTwoDrives) {
@@ -185,7 +187,7 @@ TEST_F(LssNode, IsTakenFromOneOfTwoDrives) {
   (void)add_namesake("gsd600@1");
   const LssNodeChange change{address(*cell.drives[0]), canopen::kUnconfigured, false};
   const auto slave = look_at_lss_slave(desk, change);
-  ASSERT_TRUE(slave) << slave.error().message;
+  ASSERT_TRUE(slave) << slave.error().message.text();
   const auto outcome = give_lss_node(desk, *slave, change);
   EXPECT_EQ(outcome.result, "without a node-ID now") << "the other one keeps its own";
   EXPECT_TRUE(outcome.done);
@@ -221,9 +223,9 @@ TEST_F(LssNode, WhoseStoringIsNotAnsweredIsNotKnown) {
   ASSERT_TRUE(outcome.error);
   EXPECT_EQ(outcome.result, "not known");
   EXPECT_FALSE(outcome.kept.has_value());
-  EXPECT_NE(outcome.error->message.find("which of them it has after power-off is not known"),
+  EXPECT_NE(outcome.error->message.text().find("which of them it has after power-off is not known"),
             std::string::npos)
-      << outcome.error->message;
+      << outcome.error->message.text();
 }
 
 TEST_F(LssNode, ThatSomebodyUsesIsRefusedBeforeAnythingIsSet) {

@@ -53,7 +53,7 @@ TEST_P(KilledRestore, IsUndoneFromAnyStep) {
     ASSERT_FALSE(world.run(world.backup, "drive.json", world.saved(), options(), step));
     if (!fs::exists(journal_of(world.saved()))) continue;
     const auto back = read_backup(world.saved());
-    ASSERT_TRUE(back) << back.error().message;
+    ASSERT_TRUE(back) << back.error().message.text();
     ASSERT_TRUE(world.run(*back, "before", world.saved().string() + ".before-node-1.json", {}, -1,
                           journal_of(world.saved())));
     EXPECT_FALSE(fs::exists(journal_of(world.saved())));
@@ -74,7 +74,7 @@ TEST_P(KilledRestore, IsRefusedWhereTheDriveHasChangedSinceItWasAgreedTo) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::refused);
   EXPECT_EQ(refused.error().object, object);
-  EXPECT_NE(refused.error().message.find("has changed since the plan was made"), std::string::npos);
+  EXPECT_NE(refused.error().message.text().find("has changed since the plan was made"), std::string::npos);
   EXPECT_EQ(world.values(), world.before);
   EXPECT_FALSE(fs::exists(world.saved()));
   how.expected = world.values();
@@ -86,14 +86,14 @@ TEST_P(KilledRestore, IsRefusedWhereTheDriveHasChangedSinceItWasAgreedTo) {
   EXPECT_EQ(world.values(), world.before);
   how.expected = world.values();
   const auto done = world.put(how);
-  ASSERT_TRUE(done) << done.error().message;
+  ASSERT_TRUE(done) << done.error().message.text();
   EXPECT_FALSE(done->failed);
   world.expect_values_of_backup();
 }
 
 bool is_told(const World& world, const char* text) {
   return std::any_of(world.notices.begin(), world.notices.end(),
-                     [&](const auto& notice) { return notice.find(text) != std::string::npos; });
+                     [&](const auto& notice) { return notice.text().find(text) != std::string::npos; });
 }
 
 TEST(KeptAddress, IsNamedWhereTheBackupHasAnother) {
@@ -150,8 +150,8 @@ TEST(Restoring, NamesWhatMayEnergiseTheMotorInItsQuestion) {
   ASSERT_EQ(world.questions.size(), 1U);
   EXPECT_NE(world.questions[0].find("Pn0600"), std::string::npos) << world.questions[0];
   EXPECT_NE(world.questions[0].find("the motor may be energised"), std::string::npos) << world.questions[0];
-  const auto told = std::count_if(world.notices.begin(), world.notices.end(), [](const std::string& notice) {
-    return notice.find("`param set Pn0600=0 -n 1`") != std::string::npos;
+  const auto told = std::count_if(world.notices.begin(), world.notices.end(), [](const Message& notice) {
+    return notice.text().find("`param set Pn0600=0 -n 1`") != std::string::npos;
   });
   EXPECT_EQ(told, 1);
   // What it holds already is no news.

@@ -99,8 +99,8 @@ class World {
     try {
       const auto done = put_into(desk, what, title, 1, saved, options, undoes);
       frames = counted->frames();
-      EXPECT_TRUE(done) << done.error().message;
-      for (const auto& error : desk.errors) ADD_FAILURE() << error.message;
+      EXPECT_TRUE(done) << done.error().message.text();
+      for (const auto& error : desk.errors) ADD_FAILURE() << error.message.text();
       notices = desk.notices;
       return done && desk.errors.empty();
     } catch (const Killed&) {
@@ -169,7 +169,7 @@ class World {
   session::Values before;
   session::Values means_before;
   std::vector<std::string> questions;
-  std::vector<std::string> notices;
+  std::vector<Message> notices;
   std::vector<Error> errors;
   bool chinese = false;
   int frames = 0;

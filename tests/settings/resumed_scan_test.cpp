@@ -25,11 +25,11 @@ TEST_F(ResumedScanTest, AnInterruptedScanGoesOnWhereItStopped) {
     node->dies_after = requests / share;
     const auto ended = learn();
     ASSERT_FALSE(ended);
-    EXPECT_EQ(ended.error().code, Errc::timeout) << ended.error().message;
+    EXPECT_EQ(ended.error().code, Errc::timeout) << ended.error().message.text();
     EXPECT_TRUE(std::filesystem::exists(scan_file(file)));
     EXPECT_FALSE(std::filesystem::exists(file));
     ASSERT_FALSE(desk.notices.empty());
-    EXPECT_NE(desk.notices.back().find("goes on from there"), std::string::npos);
+    EXPECT_NE(desk.notices.back().text().find("goes on from there"), std::string::npos);
   }
   begin_anew();
   learned();
@@ -78,7 +78,8 @@ TEST_F(ResumedScanTest, AScanThatWasCutOrHasNoSerialNumberBeginsAnew) {
     begin_anew();
     if (!has_serial) node->objects.values[{0x1018, 4}] = {0, 0, 0, 0};
     ASSERT_TRUE(learn());
-    EXPECT_NE(desk.notices.front().find("starts again"), std::string::npos) << desk.notices.front();
+    EXPECT_NE(desk.notices.front().text().find("starts again"), std::string::npos)
+        << desk.notices.front().text();
     std::filesystem::remove(file);
   }
 }

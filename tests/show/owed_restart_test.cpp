@@ -32,7 +32,7 @@ class OwedRestartKept : public testing::Test {
   /// A gsd600 as delivered, at this node of a bus with this URL.
   void open(std::string_view spec, const std::string& url) {
     auto bus = sim::open_sim(spec, folders, sim::SimBus::Clock::virtual_time);
-    ASSERT_TRUE(bus) << bus.error().message;
+    ASSERT_TRUE(bus) << bus.error().message.text();
     session = std::make_unique<session::Session>(std::move(*bus), url, session::Options{});
   }
   static OwedRestart owed(session::OwedValue value, std::uint32_t serial = 0) {

@@ -25,7 +25,7 @@ class DriveModelTest : public testing::Test {
   void build(const std::string& family) {
     const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     auto loaded = drive::load_profile(family, folders);
-    ASSERT_TRUE(loaded) << loaded.error().message;
+    ASSERT_TRUE(loaded) << loaded.error().message.text();
     profile_ = std::make_unique<drive::Profile>(std::move(*loaded));
     model_ = std::make_unique<DriveModel>(*profile_, 1, memory_, family);
     commission(*model_);

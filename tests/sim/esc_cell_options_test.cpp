@@ -22,13 +22,13 @@ class EscCellOptionsTest : public testing::Test {
  protected:
   void build(std::string_view options) {
     auto cell = build_esc_cell("sv2@1,sv2@2?" + std::string(options), kFolders, start_);
-    ASSERT_TRUE(cell) << cell.error().message;
+    ASSERT_TRUE(cell) << cell.error().message.text();
     cell_ = std::move(*cell);
   }
   static std::string refused(std::string_view options) {
     const auto cell = build_esc_cell("sv2@1,sv2@2?" + std::string(options), kFolders, TimePoint{});
     EXPECT_FALSE(cell) << options;
-    return cell ? std::string() : cell.error().message;
+    return cell ? std::string() : cell.error().message.text();
   }
   /// The working counter of a broadcast read at this time; -1: the frame does not come back.
   int counter(Duration at) {

@@ -144,7 +144,7 @@ TEST_F(EscMaster, ProcessDataFlowAtFourMilliseconds) {
   }
   const auto logical = image_.add(1, mapping);
   const auto plan = ec::plan_slave(1, {2, 0x1800, 0x64, 3, 0x1C00, 0x20}, mapping, logical);
-  ASSERT_TRUE(plan) << plan.error().message;
+  ASSERT_TRUE(plan) << plan.error().message.text();
   for (const auto& request : plan->requests(kFirst)) put(request);
   go_to(4);
   for (const auto& entry : mapping.outputs) {
@@ -240,7 +240,7 @@ TEST_F(EscMaster, StatesAreAskedForAndRefusalsUnderstood) {
   auto result = ask(states);
   ASSERT_TRUE(result);
   ASSERT_FALSE(*result);
-  EXPECT_NE(result->error().message.find("0016"), std::string::npos) << result->error().message;
+  EXPECT_NE(result->error().message.text().find("0016"), std::string::npos) << result->error().message.text();
   put(ec::mailbox_setup(kFirst, {0x1000, 256, 0x1400, 256}));
   slave().faults().state_delay = milliseconds(70);
   states.start(ec::AlState::preop, now_);

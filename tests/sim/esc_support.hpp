@@ -59,7 +59,7 @@ class EscTest : public testing::Test {
       const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
       return drive::load_profile("sv2", folders);
     }();
-    ASSERT_TRUE(kLoaded) << kLoaded.error().message;
+    ASSERT_TRUE(kLoaded) << kLoaded.error().message.text();
     profile_ = std::make_unique<drive::Profile>(*kLoaded);
     options_ = EscSlave::Options::of(*profile_);
   }

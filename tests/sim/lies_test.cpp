@@ -19,7 +19,8 @@ TEST(Lies, OnlyTheWordsOfTheWireAreTaken) {
   const auto refused = lies_of(wrong, wrong.options[0], kCanLies);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Errc::usage);
-  EXPECT_NE(refused.error().message.find("unconfirmed"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.text().find("unconfirmed"), std::string::npos)
+      << refused.error().message.text();
 }
 
 TEST(Lies, EverySecondAnswerIsLateAndNoneOvertakesIt) {

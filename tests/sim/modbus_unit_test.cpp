@@ -14,7 +14,7 @@ class ModbusUnitTest : public testing::Test {
  protected:
   void SetUp() override {
     auto built = build_modbus_cell("ts@3", folders, kPowerOn);
-    ASSERT_TRUE(built) << built.error().message;
+    ASSERT_TRUE(built) << built.error().message.text();
     cell = std::move(*built);
   }
   std::string ask(std::string_view pdu, std::uint8_t unit = 3) {

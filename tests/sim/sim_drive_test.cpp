@@ -179,7 +179,7 @@ TEST(Memory, KeptInAFileOutlivesTheDrive) {
   const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
   for (const int run : {1, 2}) {
     auto bus = open_sim("gsd600@1?state=" + file.string(), folders, SimBus::Clock::virtual_time);
-    ASSERT_TRUE(bus) << bus.error().message;
+    ASSERT_TRUE(bus) << bus.error().message.text();
     (void)(*bus)->receive((*bus)->now());
     if (run == 1) (void)(*bus)->send(*can::parse_frame("601#2B01200F59020000"));
     if (run == 2) (void)(*bus)->send(*can::parse_frame("601#4001200F00000000"));

@@ -36,7 +36,7 @@ class SimPortTest : public testing::Test {
  protected:
   void open(std::string_view text) {
     auto cell = build_esc_cell(text, kFolders, SimClock(SimClock::Kind::virtual_time).now());
-    ASSERT_TRUE(cell) << cell.error().message;
+    ASSERT_TRUE(cell) << cell.error().message.text();
     port_ = std::make_unique<SimPort>(std::move(*cell), SimClock(SimClock::Kind::virtual_time));
   }
   /// The working counter that comes back within `patience`; -1: none.
@@ -62,8 +62,8 @@ TEST(EscCell, SlavesAreNumberedByTheirPosition) {
 TEST(EscCell, AFamilyWithoutEtherCatIsRefused) {
   const auto error = refused("sv2@1,gsd600@2");
   EXPECT_EQ(error.code, Errc::usage);
-  EXPECT_EQ(error.message, "gsd600 has no EtherCAT: the rules of this family have no [coe] section");
-  EXPECT_EQ(error.hint, "put it on a simulated CAN bus: sim:gsd600@2");
+  EXPECT_EQ(error.message.text(), "gsd600 has no EtherCAT: the rules of this family have no [coe] section");
+  EXPECT_EQ(error.hint.text(), "put it on a simulated CAN bus: sim:gsd600@2");
 }
 
 TEST(EscCell, WhatIsWrongInTheTextIsTold) {
@@ -74,7 +74,7 @@ TEST(EscCell, WhatIsWrongInTheTextIsTold) {
       refused("sv2@1?colour=blue").message,
       "'colour' is not an option of a simulated ring: use state, fault, counts, panel, sii, delay, silent, lose, "
       "short, mailbox, emergency, fall, free-run, clock, lie, lie-after, lie-for, power or cut");
-  EXPECT_EQ(refused("sv2@1?delay=20").message.substr(0, 7), "delay: ");
+  EXPECT_EQ(refused("sv2@1?delay=20").message.text().substr(0, 7), "delay: ");
   EXPECT_EQ(refused("sv2@1?fault=nonsense").message,
             "'fault=nonsense' is not CODE@TIME or PANEL@TIME; options stand behind all drives: "
             "sim:gsd600@1,dm@2?fault=0xFF00@2s");
@@ -82,7 +82,7 @@ TEST(EscCell, WhatIsWrongInTheTextIsTold) {
 
 TEST(EscCell, OptionsReachEverySlave) {
   const auto cell = build_esc_cell("sv2@1,SV2@2?delay=20ms&fault=0xFF00@2s", kFolders, TimePoint{});
-  ASSERT_TRUE(cell) << cell.error().message;
+  ASSERT_TRUE(cell) << cell.error().message.text();
   ASSERT_EQ(cell->slaves.size(), 2U);
   EXPECT_EQ(cell->profiles.size(), 1U);
   EXPECT_EQ(cell->ring.size(), 2U);
@@ -147,12 +147,12 @@ TEST(SimPort, MemoryOutlivesTheProcessInAFile) {
   std::filesystem::remove(file);
   {
     auto cell = build_esc_cell("sv2@1?state=" + file.string(), kFolders, TimePoint{});
-    ASSERT_TRUE(cell) << cell.error().message;
+    ASSERT_TRUE(cell) << cell.error().message.text();
     cell->memory->cells("1.sv2")[{0x2005, 3}] = {1, 0};
     ASSERT_TRUE(cell->memory->save());
   }
   auto cell = build_esc_cell("sv2@1?state=" + file.string(), kFolders, TimePoint{});
-  ASSERT_TRUE(cell) << cell.error().message;
+  ASSERT_TRUE(cell) << cell.error().message.text();
   EXPECT_EQ((cell->memory->cells("1.sv2")[{0x2005, 3}]), (Bytes{1, 0}));
   std::filesystem::remove(file);
 }

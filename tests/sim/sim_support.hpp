@@ -24,7 +24,7 @@ class CellTest : public testing::Test {
   void build(std::string_view spec) {
     const std::filesystem::path folders[] = {std::filesystem::path(source_dir()) / "eds"};
     auto cell = build_cell(spec, folders, bus.now());
-    ASSERT_TRUE(cell) << cell.error().message;
+    ASSERT_TRUE(cell) << cell.error().message.text();
     cell_ = std::move(*cell);
     for (const auto& drive : cell_.drives) bus.attach(*drive);
   }

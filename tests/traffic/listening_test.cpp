@@ -64,7 +64,7 @@ TEST_F(ListeningTest, ALostBusLeavesTheSummaryOfWhatCameBefore) {
   EXPECT_TRUE(errors.empty());
   EXPECT_TRUE(has_summary(fail(Errc::bus, "can0 went down"), errors));
   ASSERT_EQ(errors.size(), 1U);
-  EXPECT_EQ(errors.front().message, "can0 went down");
+  EXPECT_EQ(errors.front().message.text(), "can0 went down");
   EXPECT_FALSE(has_summary(fail(Errc::refused, "another drive is there"), errors));
   EXPECT_EQ(errors.size(), 1U) << "it is the error of the line itself";
 }

@@ -45,7 +45,7 @@ class Check {
     if (!parsed) return fail(parsed.error());
     const auto settings = settings_of(*parsed, settings_);
     if (!settings) return fail(settings.error());
-    std::vector<std::string> notices;  // The run tells them.
+    std::vector<Message> notices;  // The run tells them.
     auto parts = shell_->parts_of_line(*parsed, *settings, notices);
     if (!parts) return fail(parts.error());
     if (parts->empty()) return check_part(*parsed, {*settings, {}, {}});
@@ -74,7 +74,7 @@ class Check {
     auto right = line.command->check(context, line.arguments);
     // What the family calls things, nobody knows any more who tells of the file.
     if (!right && context.profile != nullptr && shell_->defaults().shows_chinese())
-      right.error().message = report::in_chinese(right.error().message, &names_of(*context.profile));
+      report::put_into_chinese(right.error().message, &names_of(*context.profile));
     return right;
   }
 
@@ -95,7 +95,7 @@ class Check {
     context.drive_folders = shell_->drive_folders();
     if (settings.drive.empty()) {
       if (!includes(command.needs, Needs::dictionary)) return {};
-      return fail(Errc::usage, formatted("'{}' needs the drive family", command.path),
+      return fail(Errc::usage, message("'{}' needs the drive family", as_it_is(command.path)),
                   "add -d FAMILY, or a line `drive FAMILY` before it; `drives` lists families");
     }
     const auto profile = shell_->profile(settings.drive);

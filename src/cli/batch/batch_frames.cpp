@@ -110,7 +110,7 @@ class Frames {
   const std::string* file_;
   Table table_;
   std::vector<Error> errors_;
-  std::vector<std::string> notices_;
+  std::vector<Message> notices_;
 };
 
 }  // namespace

@@ -49,7 +49,7 @@ class Planner {
   Result<void> count() {
     if (++taken_ <= kMostTaken) return {};
     full_ = true;
-    return fail(Errc::usage, formatted("the loops make more than {} lines", kMostTaken),
+    return fail(Errc::usage, message("the loops make more than {} lines", kMostTaken),
                 "use one file per machine or group of axes, run one after the other");
   }
 
@@ -58,8 +58,7 @@ class Planner {
     text_ += size;
     if (text_ <= kMostText) return {};
     full_ = true;
-    return fail(Errc::usage,
-                formatted("with its variables expanded the file exceeds {} MiB", kMostText >> 20U),
+    return fail(Errc::usage, message("with its variables expanded the file exceeds {} MiB", kMostText >> 20U),
                 "is a variable too long?");
   }
 
@@ -188,7 +187,7 @@ class Planner {
 }  // namespace
 
 void LineErrors::add(std::uint32_t line, const std::string& round, Error error) {
-  if (!told_.insert({line, error.message}).second) return;
+  if (!told_.insert({line, error.message.text()}).second) return;
   error = in_round(round, std::move(error));
   error.line = line;
   errors_.push_back(std::move(error));

@@ -113,7 +113,7 @@ class BatchRun {
     Outcome out{.command = "pause", .settings = shell_->defaults()};
     const auto text = formatted("{}", fmt::join(step.words, " "));
     if (!shell_->console().can_ask()) {
-      out.notices.push_back("no terminal, pause skipped: " + text);
+      out.notices.push_back("no terminal, pause skipped: " + Message(as_it_is(text)));
       return out;
     }
     shell_->console().pause(text);
@@ -174,7 +174,7 @@ class BatchRun {
   void record(const Step& step, const Outcome& outcome) {
     const bool ok = outcome.errors.empty();
     report::List notices;
-    for (const auto& notice : outcome.notices) notices.emplace_back(notice);
+    for (const auto& notice : outcome.notices) notices.emplace_back(notice.text());
     report::Record out{{"line", step.line},
                        {"text", step.text},
                        {"command", report::text_or_null(outcome.command)},
@@ -226,7 +226,7 @@ int run_steps(Shell& shell, std::span<const Step> steps, const std::string& file
 }
 
 Error at_line(const std::string& file, std::uint32_t line, Error error) {
-  error.message = formatted("{}:{}: {}", file, line, error.message);
+  error.message = message("{}:{}: {}", as_it_is(file), line, error.message);
   if (!error.line) error.line = line;
   return error;
 }

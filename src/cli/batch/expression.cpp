@@ -87,7 +87,7 @@ class Lexer {
       if (const auto taken = take(out.text); !taken) return fail(taken.error());
     // A lone `!` would never be passed.
     if (out.text.empty())
-      return fail(Errc::usage, formatted("'{}' compares nothing", text_[at_]), std::string(kExample));
+      return fail(Errc::usage, message("'{}' compares nothing", as_it_is(text_[at_])), std::string(kExample));
     return out;
   }
 
@@ -149,7 +149,7 @@ Result<std::vector<Compared>> sides(const Operand& operand, const report::Value&
       continue;
     }
     const auto list = elements(part.value);
-    if (!list) return fail(Errc::negative, formatted("{} is not a list and cannot be counted", part.where));
+    if (!list) return fail(Errc::negative, message("{} is not a list and cannot be counted", part.where));
     out.push_back({part.where == "." ? "count" : "count(" + part.where + ")", list->size()});
   }
   return out;
@@ -202,22 +202,22 @@ Result<bool> compare(const Compared& left, Comparator comparator, const Compared
   if (comparator == Comparator::unequal) return text(left.value) != text(right.value);
   const auto& wrong = a ? right : left;
   return fail(Errc::negative,
-              formatted("{}{} is not a number: {} cannot compare it", wrong.where,
-                        wrong.where.empty() ? text(wrong.value) : " (" + report::to_json(wrong.value) + ")",
-                        symbol(comparator)));
+              message("{}{} is not a number: {} cannot compare it", wrong.where,
+                      wrong.where.empty() ? text(wrong.value) : " (" + report::to_json(wrong.value) + ")",
+                      symbol(comparator)));
 }
 
 std::string shown(const Compared& side) { return side.word ? text(side.value) : report::to_json(side.value); }
 
 tl::unexpected<Error> refuted(const Compared& left, Comparator comparator, const Compared& right) {
   if (comparator == Comparator::holds)
-    return fail(Errc::negative, formatted("{} is {}, expected true", left.where, shown(left)));
+    return fail(Errc::negative, message("{} is {}, expected true", left.where, shown(left)));
   const auto expected =
       (comparator == Comparator::contains ? std::string("~") : std::string(symbol(comparator))) + " " +
       (right.where.empty() ? "" : right.where + " = ") + shown(right);
   return fail(Errc::negative, left.where.empty()
-                                  ? formatted("{} {} is not true", shown(left), expected)
-                                  : formatted("{} is {}, expected {}", left.where, shown(left), expected));
+                                  ? message("{} {} is not true", shown(left), expected)
+                                  : message("{} is {}, expected {}", left.where, shown(left), expected));
 }
 
 }  // namespace
@@ -244,7 +244,7 @@ Result<Expression> parse_expression(std::string_view text, const VariableLookup&
     if (!token) return fail(token.error());
     if (token->kind == Token::Kind::end) return out;
     if (token->kind != Token::Kind::word || token->text != "and")
-      return fail(Errc::usage, formatted("'{}' does not belong here", token->text),
+      return fail(Errc::usage, message("'{}' does not belong here", as_it_is(token->text)),
                   "join comparisons with `and`; put text with blanks in quotes");
   }
 }

@@ -17,7 +17,7 @@ using gateway::Request;
 using gateway::Service;
 using Words = std::vector<std::string>;
 
-tl::unexpected<Error> wrong(std::string message) {
+tl::unexpected<Error> wrong(Message message) {
   return fail(
       Errc::usage, "CiA 309-3: " + std::move(message),
       "[[NET] NODE] r INDEX SUB [TYPE], w INDEX SUB TYPE VALUE, start, stop, preop, reset node, reset comm");
@@ -75,12 +75,12 @@ Result<Words> command(const Request& line) {
       break;
     default: break;
   }
-  return wrong(formatted("'{}' is not understood", fmt::join(line.words, " ")));
+  return wrong(message("'{}' is not understood", as_it_is(fmt::to_string(fmt::join(line.words, " ")))));
 }
 
 Result<Words> set_default(const Request& line) {
   const auto number = line.words.size() == 3 ? gateway::parse_unsigned(line.words[2]) : std::nullopt;
-  if (!number) return wrong(formatted("'set {}' takes a number", line.words[1]));
+  if (!number) return wrong(message("'set {}' takes a number", as_it_is(line.words[1])));
   if (line.words[1] == "node") return Words{"use", *number == 0 ? "all" : std::to_string(*number)};
   if (*number != 1) return wrong("servoctl works on one bus: the network can only be 1");
   return Words{};
@@ -90,7 +90,7 @@ Result<Words> translate(const Request& line) {
   if (line.words.empty()) return wrong("a command is missing");
   if (line.numbers.size() == 2 && line.numbers.front() != 1)
     return wrong(
-        formatted("network {}: servoctl works on one bus, the network can only be 1", line.numbers.front()));
+        message("network {}: servoctl works on one bus, the network can only be 1", line.numbers.front()));
   if (line.verb() == "set" && line.words.size() > 1) return set_default(line);
   auto out = command(line);
   if (!out || line.numbers.empty()) return out;

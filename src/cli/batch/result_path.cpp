@@ -16,7 +16,7 @@ using report::Table;
 using report::Value;
 
 tl::unexpected<Error> no_path(std::string_view path) {
-  return fail(Errc::usage, formatted("'{}' leads nowhere", path),
+  return fail(Errc::usage, message("'{}' leads nowhere", as_it_is(path)),
               "write [0].value, .state or .fault.code, with the names of --json");
 }
 
@@ -42,13 +42,13 @@ const Value* field_of(const Record& record, std::string_view name) {
 Result<Part> take_field(const Part& from, const std::string& name) {
   const auto* record = std::get_if<Record>(&from.value.data());
   const auto said = from.where == "." ? std::string("the result") : from.where;
-  if (record == nullptr) return fail(Errc::negative, formatted("{} has no field {}", said, name));
+  if (record == nullptr) return fail(Errc::negative, message("{} has no field {}", said, name));
   if (const auto* value = field_of(*record, name))
     return Part{(from.where == "." ? "" : from.where) + "." + name, opened(*value)};
   std::vector<std::string> names;
   for (const auto& field : *record)
     if (field.show != Show::text) names.push_back(field.key);
-  return fail(Errc::negative, formatted("{} has no field {}", said, name), "it has " + one_of(names));
+  return fail(Errc::negative, message("{} has no field {}", said, name), "it has " + one_of(names));
 }
 
 std::string element_path(const std::string& list, std::size_t i) {
@@ -63,8 +63,8 @@ Result<std::vector<Part>> take_step(const std::vector<Part>& from, const PathSte
       if (!list || *step.element >= list->size())
         return fail(
             Errc::negative,
-            formatted("{} has no element {}", part.where == "." ? "the result" : part.where, *step.element),
-            list ? formatted("it has {} entries", list->size()) : "it is not a list");
+            message("{} has no element {}", part.where == "." ? "the result" : part.where, *step.element),
+            list ? message("it has {} entries", list->size()) : "it is not a list");
       out.push_back({element_path(part.where, *step.element), (*list)[*step.element]});
       continue;
     }

@@ -10,7 +10,7 @@ namespace {
 
 tl::unexpected<Error> in_line(const std::string& file, std::uint32_t line, Error error) {
   error.code = Errc::file;
-  error.message = formatted("{}:{}: {}", file, line, error.message);
+  error.message = message("{}:{}: {}", as_it_is(file), line, error.message);
   error.line = line;
   return fail(std::move(error));
 }
@@ -46,7 +46,7 @@ Result<std::vector<settings::SettingLine>> setting_lines(Shell& shell, std::stri
   for (const auto& step : plan.steps) {
     if (step.kind != Step::Kind::command || is_exit(step.words))
       return in_line(file, step.line,
-                     fail(Errc::file, formatted("'{}' writes no value", step.text),
+                     fail(Errc::file, message("'{}' writes no value", as_it_is(step.text)),
                           "a batch file read as settings may only contain lines that write")
                          .value());
     auto next = chosen(shell, chosen_now, step.words);
@@ -55,10 +55,11 @@ Result<std::vector<settings::SettingLine>> setting_lines(Shell& shell, std::stri
     if (is_choice(step.words)) continue;
     auto line = line_of(chosen_now, step.words);
     const bool foreign = out.empty() && match_command(step.words).command == nullptr;
-    if (!line && foreign && !line.error().hint.starts_with("did you mean"))
-      return fail(Errc::file,
-                  formatted("{} is neither a backup, a DCF, a table nor a list of command lines", file),
-                  "`backup FILE` writes a file that can be read here");
+    if (!line && foreign && !line.error().hint.text().starts_with("did you mean"))
+      return fail(
+          Errc::file,
+          message("{} is neither a backup, a DCF, a table nor a list of command lines", as_it_is(file)),
+          "`backup FILE` writes a file that can be read here");
     if (!line) return in_line(file, step.line, line.error());
     line->line = step.line;
     out.push_back(std::move(*line));

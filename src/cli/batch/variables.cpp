@@ -25,10 +25,10 @@ struct Assignment {
 Result<Assignment> parse_assignment(std::string_view text) {
   const auto equals = text.find('=');
   if (equals == std::string_view::npos || !is_variable_name(text.substr(0, equals)))
-    return fail(Errc::usage, formatted("'{}' is not NAME=VALUE", text),
+    return fail(Errc::usage, message("'{}' is not NAME=VALUE", as_it_is(text)),
                 "a name has letters, digits and _; put a value with blanks in quotes: NAME=\"two words\"");
   if (text.size() - equals > kLongestValue)
-    return fail(Errc::usage, formatted("the value of {} is too long", text.substr(0, equals)));
+    return fail(Errc::usage, message("the value of {} is too long", text.substr(0, equals)));
   return Assignment{std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }
 
@@ -66,9 +66,9 @@ Result<void> add_word(std::vector<LoopItem>& out, const std::string& word) {
   }
   for (const auto& range : ranges) {
     if (range.last < range.first)
-      return fail(Errc::usage, formatted("'{}' runs backwards", word), "write 5-8, not 8-5");
+      return fail(Errc::usage, message("'{}' runs backwards", as_it_is(word)), "write 5-8, not 8-5");
     if (range.last - range.first >= kLongestList || out.size() >= kLongestList)
-      return fail(Errc::usage, formatted("'{}' is too long a list", word));
+      return fail(Errc::usage, message("'{}' is too long a list", as_it_is(word)));
     for (auto i = range.first; i <= range.last; ++i) out.push_back({std::to_string(i)});
   }
   return {};
@@ -119,9 +119,9 @@ Result<std::string> Variables::value(std::string_view name) const {
   if (const auto found = values_.find(name); found != values_.end()) return found->second;
   std::vector<std::string> known;
   for (const auto& entry : values_) known.push_back(entry.first);
-  auto hint = did_you_mean(name, known);
-  if (hint.empty()) hint = formatted("`set {0}=VALUE`, or --var {0}=VALUE on the command line", name);
-  return fail(Errc::usage, formatted("unknown variable ${{{}}}", name), std::move(hint));
+  Message hint = did_you_mean(name, known);
+  if (hint.empty()) hint = message("`set {0}=VALUE`, or --var {0}=VALUE on the command line", as_it_is(name));
+  return fail(Errc::usage, message("unknown variable ${{{}}}", name), std::move(hint));
 }
 
 Result<std::vector<LoopItem>> loop_items(std::span<const std::string> words,

@@ -100,7 +100,7 @@ void Console::check_log() {
   const auto failure = log_->take_failure();
   if (!failure) return;
   log_.reset();
-  write_err("notice: " + printable(failure->message) + "; " + printable(failure->hint) + "\n");
+  write_err("notice: " + printable(failure->message.text()) + "; " + printable(failure->hint.text()) + "\n");
 }
 
 /// Waits until a line was typed; false after Ctrl-C.

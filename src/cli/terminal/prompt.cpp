@@ -237,7 +237,7 @@ void Prompt::show_notices() {
   if (notices_.empty() || terminal_.is_behind()) return;
   wipe();
   for (const auto& notice : notices_.give())
-    terminal_.say("* " + printable(console_->in_language(notice)) + "\n");
+    terminal_.say("* " + printable(console_->in_language(notice.text())) + "\n");
   draw();
 }
 

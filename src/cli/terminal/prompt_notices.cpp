@@ -24,7 +24,7 @@ void PromptNotices::hear(Shell& shell) {
   }
 }
 
-std::vector<std::string> PromptNotices::give() {
+std::vector<Message> PromptNotices::give() {
   if (left_out_ > 0)
     waiting_.push_back(formatted("{} messages were not shown: the output was not read in time",
                                  std::exchange(left_out_, 0)));

@@ -15,10 +15,10 @@ class PromptNotices {
   void hear(Shell& shell);
   bool empty() const { return waiting_.empty(); }
   /// All that wait, and how many were left out because the terminal took nothing for too long.
-  std::vector<std::string> give();
+  std::vector<Message> give();
 
  private:
-  std::vector<std::string> waiting_;
+  std::vector<Message> waiting_;
   std::size_t left_out_ = 0;
 };
 

@@ -194,9 +194,10 @@ Result<void> check_restricted(const command::PromptWord& word, const std::string
 Result<void> check_family_of_axis(Shell& shell, const Settings& settings) {
   const auto family = family_in_cabinet(settings, shell);
   if (family.empty() || family == settings.drive) return {};
-  return fail(Errc::usage,
-              formatted("{} is {} by the cabinet file, not {}", settings.nodes, family, settings.drive),
-              "`use` chooses other nodes; or change `family` in the file");
+  return fail(
+      Errc::usage,
+      message("{} is {} by the cabinet file, not {}", settings.nodes, as_it_is(family), settings.drive),
+      "`use` chooses other nodes; or change `family` in the file");
 }
 
 /// A word that contradicts an earlier one ends what that chose.
@@ -275,8 +276,8 @@ Result<Settings> chosen(Shell& shell, Settings defaults, const std::vector<std::
   const auto* word = find_place_word(words);
   if (word == nullptr) return defaults;
   if (words.size() != 2)
-    return fail(Errc::usage, formatted("'{}' takes one argument", word->name),
-                formatted("`{}`: {}", command::prompt_usage(*word), word->summary));
+    return fail(Errc::usage, message("'{}' takes one argument", as_it_is(word->name)),
+                message("`{}`: {}", as_it_is(command::prompt_usage(*word)), word->summary));
   if (const auto allowed = check_restricted(*word, words[1]); !allowed) return fail(allowed.error());
   if (word->name == "use") {
     if (const auto known = check_nodes(shell, defaults, words[1]); !known) return fail(known.error());
