@@ -46,7 +46,7 @@ Result<Value> run_clone(Context& context, const Arguments& arguments) {
   bool failed = false;
   for (std::size_t i = 0; i < to->size() && !failed; ++i) {
     const auto node = (*to)[i];
-    auto done = settings::put_into(context, backup, formatted("node {}", from->front()), node,
+    auto done = settings::put_into(context, backup, message("node {}", node_name(from->front())), node,
                                    formatted("before-clone-node-{}.json", node),
                                    {.choice = {.force = arguments.has("--force")},
                                     .keep = arguments.has("--keep"),

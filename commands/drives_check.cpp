@@ -1,6 +1,7 @@
 #include <system_error>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/family_mistakes.hpp"

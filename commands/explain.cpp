@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/shared_profile.hpp"

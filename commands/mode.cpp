@@ -1,5 +1,6 @@
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "drive/quantity.hpp"
@@ -36,8 +37,8 @@ Result<std::int8_t> parse_mode(const drive::Profile& profile, std::string_view t
   const auto near = did_you_mean(text, offered);
   return fail(Errc::usage, message("'{}' is not a mode of this family", as_it_is(text)),
               !near.empty()     ? near
-              : offered.empty() ? std::string("write its number: 1 to 10 are the CiA 402 modes")
-                                : std::string("`objects 0x6060` lists them"));
+              : offered.empty() ? Message("write its number: 1 to 10 are the CiA 402 modes")
+                                : Message("`objects 0x6060` lists them"));
 }
 
 struct WantedMode {

@@ -48,16 +48,16 @@ Result<Value> run_restore(Context& context, const Arguments& arguments) {
     if (const auto kept = keep_part(context, *backup, file, arguments.text("--only")); !kept)
       return fail(kept.error());
   if (!backup) return fail(backup.error());
-  auto done =
-      settings::put_into(context, *backup, file, node, formatted("{}.before-node-{}.json", file, node),
-                         {.choice = {.with_address = arguments.has("--with-address"),
-                                     .force = arguments.has("--force"),
-                                     .skip_invalid = arguments.has("--skip-invalid")},
-                          .roll_back = !arguments.has("--no-rollback"),
-                          .keep = arguments.has("--keep"),
-                          .unlock = arguments.has("--unlock"),
-                          .resume = arguments.has("--resume")},
-                         settings::journal_of(file));
+  auto done = settings::put_into(context, *backup, as_it_is(file), node,
+                                 formatted("{}.before-node-{}.json", file, node),
+                                 {.choice = {.with_address = arguments.has("--with-address"),
+                                             .force = arguments.has("--force"),
+                                             .skip_invalid = arguments.has("--skip-invalid")},
+                                  .roll_back = !arguments.has("--no-rollback"),
+                                  .keep = arguments.has("--keep"),
+                                  .unlock = arguments.has("--unlock"),
+                                  .resume = arguments.has("--resume")},
+                                 settings::journal_of(file));
   if (!done) return fail(done.error());
   return std::move(done->answer);
 }

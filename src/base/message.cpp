@@ -2,6 +2,7 @@
 
 #include <fmt/args.h>
 #include <fmt/format.h>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -147,6 +148,17 @@ Message::Message(Verbatim text) {
   if (text.text.empty()) return;
   literal_ = "{}";
   arguments_.emplace_back(std::move(text));
+}
+
+bool Message::names(std::string_view name) const {
+  const auto has = [name](std::string_view text) { return text.find(name) != std::string_view::npos; };
+  return std::any_of(arguments_.begin(), arguments_.end(), [&](const Argument& one) {
+    if (const auto* inner = std::get_if<Boxed<Message>>(&one)) return inner->get()->names(name);
+    if (const auto* text = std::get_if<std::string>(&one)) return has(*text);
+    if (const auto* text = std::get_if<Verbatim>(&one)) return has(text->text);
+    const auto* nodes = std::get_if<Nodes>(&one);
+    return nodes != nullptr && std::any_of(nodes->names.begin(), nodes->names.end(), has);
+  });
 }
 
 Message operator+(const Message& first, const Message& second) {

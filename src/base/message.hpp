@@ -74,6 +74,9 @@ class Message {
   Message changed(const std::function<std::string_view(std::string_view literal)>& literal,
                   const std::function<void(Argument&)>& argument) const;
 
+  /// Whether a place, also of a message within, has this name: then it need not be put before.
+  bool names(std::string_view name) const;
+
   bool operator==(const Message& other) const { return text() == other.text(); }
 
   /// One behind the other.

@@ -218,23 +218,4 @@ std::vector<std::string> nearest(std::string_view text, std::span<const std::str
   return out;
 }
 
-std::string one_of(std::span<const std::string> words) {
-  std::string out;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) out += i + 1 == words.size() ? " or " : ", ";
-    out += words[i];
-  }
-  return out;
-}
-
-std::string did_you_mean(std::string_view text, std::span<const std::string> candidates) {
-  const auto best = nearest(text, candidates);
-  switch (best.size()) {
-    case 0: return {};
-    case 1: return formatted("did you mean {}?", best[0]);
-    case 2: return formatted("did you mean {} or {}?", best[0], best[1]);
-    default: return formatted("did you mean {}, {} or {}?", best[0], best[1], best[2]);
-  }
-}
-
 }  // namespace servoctl

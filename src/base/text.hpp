@@ -53,10 +53,4 @@ std::size_t edit_distance(std::string_view a, std::string_view b);
 std::vector<std::string> nearest(std::string_view text, std::span<const std::string> candidates,
                                  std::size_t most = 3);
 
-/// "Did you mean a, b or c?"; empty when there is nothing to offer.
-std::string did_you_mean(std::string_view text, std::span<const std::string> candidates);
-
-/// `a`, `a or b`, `a, b or c`.
-std::string one_of(std::span<const std::string> words);
-
 }  // namespace servoctl

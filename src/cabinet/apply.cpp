@@ -157,8 +157,8 @@ class Applying {
     session::StatePause pause(*desk.session, axis.node);
     if (!desk.dry_run && needs_pause(*run.look->plan))
       if (const auto entered = pause.enter(); !entered) return entered;
-    const auto done = settings::put_into(desk, run.look->plan->wanted, cabinet_->file.string(), axis.node,
-                                         before_file(*cabinet_, axis), restoring(run));
+    const auto done = settings::put_into(desk, run.look->plan->wanted, as_it_is(cabinet_->file.string()),
+                                         axis.node, before_file(*cabinet_, axis), restoring(run));
     if (done) {
       run.end = end_of(done->end);
       run.in_flash = done->in_flash;
@@ -229,7 +229,7 @@ class Applying {
     session::StatePause pause(*desk.session, axis.node);
     if (pauses)
       if (const auto entered = pause.enter(); !entered) return fail(entered.error());
-    auto done = settings::put_into(desk, *backup, file.string(), axis.node,
+    auto done = settings::put_into(desk, *backup, as_it_is(file.string()), axis.node,
                                    formatted("{}.before-{}.json", file.string(), axis.name), how,
                                    settings::journal_of(file));
     if (const auto left = pause.leave(true); !left) desk.errors.push_back(left.error());

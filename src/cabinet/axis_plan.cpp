@@ -113,7 +113,7 @@ class AxisPlanner {
   }
 
   Result<void> compare_wanted() {
-    settings::RestoreTarget target(*desk_, out_.wanted, cabinet_->file.string(), axis_->node,
+    settings::RestoreTarget target(*desk_, out_.wanted, as_it_is(cabinet_->file.string()), axis_->node,
                                    {.with_address = true, .keep = choice_->keep, .only_looks = true});
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     out_.present = target.present();

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_values.hpp"
 #include "drive/drive_settings.hpp"
@@ -82,7 +83,7 @@ class AxisCheck {
   }
 
   static Error with_name(const Setting& setting, Error error) {
-    if (error.message.text().find(setting.name) == std::string::npos)
+    if (!error.message.names(setting.name))
       error.message = message("{}: {}", as_it_is(setting.name), error.message);
     return error;
   }

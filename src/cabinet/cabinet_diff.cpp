@@ -37,12 +37,12 @@ class CabinetDifference {
     for (const auto& axis : axes)
       if (const auto done = compare_axis(axis); !done) return fail(done.error());
     if (different_ > 0)
-      tell(
-          formatted("{} of {} values differ between {} and {}", different_, compared_, a_->title, b_->title));
+      tell(message("{} of {} values differ between {} and {}", different_, compared_, as_it_is(a_->title),
+                   as_it_is(b_->title)));
     if (in_one_ > 0)
-      tell(formatted("{} in one of {} and {} only",
-                     in_one_ == 1 ? "1 axis stands" : formatted("{} axes stand", in_one_), a_->title,
-                     b_->title));
+      tell(message("{} in one of {} and {} only",
+                   in_one_ == 1 ? "1 axis stands" : message("{} axes stand", in_one_), as_it_is(a_->title),
+                   as_it_is(b_->title)));
     return Value(
         Record{{"compared", compared_},
                {"different", different_},
@@ -62,7 +62,7 @@ class CabinetDifference {
     return out;
   }
 
-  void tell(std::string what) { desk_->errors.push_back(make_error(Errc::negative, std::move(what))); }
+  void tell(Message what) { desk_->errors.push_back(make_error(Errc::negative, std::move(what))); }
 
   Result<void> compare_axis(const std::string& name) {
     const auto has = [&](const CabinetSide& side) {

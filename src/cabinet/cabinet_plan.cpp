@@ -30,7 +30,7 @@ bool is_cut_off(const Cabinet& cabinet, const Axis& axis) {
 
 Result<settings::BeforeFile> find_before(const show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
                                          const session::Identity& drive) {
-  return settings::BeforeFile::find(desk, before_file(cabinet, axis), cabinet.file.string(), drive);
+  return settings::BeforeFile::find(desk, before_file(cabinet, axis), as_it_is(cabinet.file.string()), drive);
 }
 
 Result<AxisPlan> plan_anew(show::Desk& desk, const Cabinet& cabinet, const Axis& axis,
@@ -76,7 +76,7 @@ Result<AxisPlan> look_at(show::Desk& desk, const Cabinet& cabinet, const Axis& a
   const auto journal = settings::read_journal(desk, before->journal());
   if (!journal) return fail(journal.error());
   if (!*journal && resume)
-    return fail(settings::nothing_to_resume(*before, cabinet.file.string(), axis.node));
+    return fail(settings::nothing_to_resume(*before, as_it_is(cabinet.file.string()), axis.node));
   if (!*journal) return plan_anew(desk, cabinet, axis, choice);
   return resume ? plan_rest(desk, cabinet, axis, choice, *before)
                 : Result<AxisPlan>(fail(interrupted(axis, before->path())));
@@ -253,9 +253,7 @@ Message of_axis(const Axis& axis, const Message& notice) {
   const show::AxisNames names({{axis.node, axis.name}});
   auto named = notice;
   names.put_into(named);
-  return named.text().find(axis.name) == std::string::npos
-             ? message("axis {}: {}", Verbatim{axis.name}, named)
-             : named;
+  return named.names(axis.name) ? named : message("axis {}: {}", Verbatim{axis.name}, named);
 }
 
 Error of_axis(const Axis& axis, Error error) {

@@ -6,6 +6,7 @@
 #include "base/duration.hpp"
 #include "base/file.hpp"
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "cabinet/axis_part.hpp"
 #include "cabinet/cabinet.hpp"
@@ -36,11 +37,13 @@ Result<std::vector<std::pair<std::string, const toml::table*>>> named_tables(con
                                                                              const toml::node& node) {
   std::vector<std::pair<std::string, const toml::table*>> out;
   const auto* all = node.as_table();
-  if (all == nullptr) return root.fail_at(node, formatted("'{0}' is a table of tables: [{0}.NAME]", kind));
+  if (all == nullptr)
+    return root.fail_at(node, message("'{0}' is a table of tables: [{0}.NAME]", as_it_is(kind)));
   for (const auto& [key, one] : *all) {
     const auto* table = one.as_table();
     if (table == nullptr)
-      return root.fail_at(one, formatted("'{0}' is no table: write [{1}.{0}]", key.str(), kind));
+      return root.fail_at(one,
+                          message("'{0}' is no table: write [{1}.{0}]", as_it_is(key.str()), as_it_is(kind)));
     out.emplace_back(std::string(key.str()), table);
   }
   std::stable_sort(out.begin(), out.end(), [](const auto& a, const auto& b) {
@@ -89,7 +92,7 @@ class CabinetReader {
                        {"bitrate", [&](const auto& n) { return read_bitrate(n, bus.bitrate); }}},
                       {{"url", "url = \"can0\""}, {"bitrate", kBitrateForm}});
       if (!done) return done;
-      if (bus.url.empty()) return reader.fail_at(*one, formatted("bus {}: 'url' is missing", name));
+      if (bus.url.empty()) return reader.fail_at(*one, message("bus {}: 'url' is missing", as_it_is(name)));
       if (const auto good = session::check_url(bus.url); !good)
         return fail_at(*one->get("url"), message("bus {}: {}", as_it_is(name), good.error().message),
                        good.error().hint);
@@ -252,10 +255,9 @@ class CabinetReader {
     for (std::size_t i = 0; i < out_.axes.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
         if (out_.axes[i].bus == out_.axes[j].bus && out_.axes[i].node == out_.axes[j].node)
-          return fail(
-              cabinet_error(out_, out_.axes[i], out_.axes[i].at,
-                            message("node {} on bus {} is axis {} already", node_name(out_.axes[i].node),
-                                    as_it_is(out_.axes[i].bus), as_it_is(out_.axes[j].name))));
+          return fail(cabinet_error(out_, out_.axes[i], out_.axes[i].at,
+                                    message("node {} on bus {} is axis {} already", out_.axes[i].node,
+                                            as_it_is(out_.axes[i].bus), as_it_is(out_.axes[j].name))));
     return {};
   }
 

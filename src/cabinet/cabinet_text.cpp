@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "drive/drive_settings.hpp"
 #include "drive/naming.hpp"
@@ -87,7 +88,7 @@ std::string family_lines(const FoundAxis& axis, bool chinese) {
         axis.others.empty()
             ? std::string(comment("  # guessed by its identity: does the nameplate agree?", chinese))
             : formatted(fmt::runtime(comment("  # guessed by its identity, which fits {} as well", chinese)),
-                        one_of(axis.others));
+                        one_of(axis.others).text());
   return out + "\n";
 }
 

@@ -172,8 +172,8 @@ class Swapping {
     how.keep = options_->apply.keep && session::can_store(*desk_.profile);
     how.unlock = options_->apply.unlock && has_password(*desk_.profile);
     how.resume = options_->apply.resume;
-    auto done =
-        settings::put_into(desk_, *backup, file.string(), axis_.node, before_file(cabinet_, axis_), how);
+    auto done = settings::put_into(desk_, *backup, as_it_is(file.string()), axis_.node,
+                                   before_file(cabinet_, axis_), how);
     if (!done) return fail(done.error());
     settings_ = std::move(done->answer);
     return {};

@@ -6,6 +6,7 @@
 #include "base/format.hpp"
 #include "base/found_file.hpp"
 #include "base/number.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "cli/bus_choice.hpp"
 

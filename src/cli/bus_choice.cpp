@@ -46,8 +46,9 @@ Result<Settings> settle_bus(const Cabinet& cabinet, Settings settings, std::vect
     if (known != nullptr && known->name == settings.bus && numbers) return settings;
     if (known == nullptr || cabinet.buses.size() > 1)
       add_once(notices,
-               formatted("{} ({}) is not used: the buses are those of {} ({})", name_of(bus_from, "--bus"),
-                         settings.bus, cabinet.file.string(), name_of(settings.cabinet_from, "--cabinet")));
+               message("{} ({}) is not used: the buses are those of {} ({})", name_of(bus_from, "--bus"),
+                       as_it_is(settings.bus), as_it_is(cabinet.file.string()),
+                       name_of(settings.cabinet_from, "--cabinet")));
     settings.bus.clear();
     return settings;
   }

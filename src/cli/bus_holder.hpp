@@ -28,7 +28,7 @@ namespace servoctl::cli {
 
 /// What to name as the bus on a machine with these CAN interfaces, and these URLs of Ethernet ports that have
 /// a link.
-std::string bus_hint(std::span<const std::string> can, std::span<const std::string> coe);
+Message bus_hint(std::span<const std::string> can, std::span<const std::string> coe);
 
 /// The bus of a front end: opened when a line needs it and kept for the next one; those of a cabinet all stay
 /// open. It knows the drives that were left energised, over a bus that was lost too, and lets none of them go

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "session/family_check.hpp"
 #include "session/identify.hpp"
@@ -14,16 +15,16 @@ namespace {
 
 using session::FamilyVerdict;
 
-std::string forcing_hint(std::span<const std::string> fitting, std::uint8_t node, bool is_axis) {
-  const std::string_view force = "--force-family continues anyway";
+Message forcing_hint(std::span<const std::string> fitting, std::uint8_t node, bool is_axis) {
+  const Message force = "--force-family continues anyway";
   if (fitting.empty())
-    return formatted("no family fits: check the nameplate; `info -n {}` shows its identity; {}", node, force);
+    return message("no family fits: check the nameplate; `info -n {}` shows its identity; {}",
+                   node_name(node), force);
   if (is_axis)
-    return formatted(
-        "its identity fits {}: if the nameplate agrees, correct `family` in the cabinet file; {}",
-        one_of(fitting), force);
-  return formatted("its identity fits {}: if the nameplate agrees, add -d {}; {}", one_of(fitting),
-                   fitting.front(), force);
+    return message("its identity fits {}: if the nameplate agrees, correct `family` in the cabinet file; {}",
+                   one_of(fitting), force);
+  return message("its identity fits {}: if the nameplate agrees, add -d {}; {}", one_of(fitting),
+                 as_it_is(fitting.front()), force);
 }
 
 }  // namespace

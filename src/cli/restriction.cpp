@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "command/command.hpp"
 #include "command/output_form.hpp"

@@ -248,7 +248,7 @@ class Shell {
   Result<std::string> family_of(Run& run, session::Session& session, std::uint8_t node, bool changes);
   std::optional<show::KnownDrive> said_of(Run& run, session::Session& session,
                                           const session::Identity& identity);
-  std::string no_family_hint() const;
+  Message no_family_hint() const;
   void learn_from(Run& run);
   void remember_family(Run& run);
   bool is_contradicted(Run& run, session::Session& session, const session::Identity& identity);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "cli/shell.hpp"
 #include "session/identify.hpp"
@@ -44,7 +45,7 @@ Suggestion suggested(Session& session, Identity identity, std::span<const drive:
   return out;
 }
 
-tl::unexpected<Error> needs_family(const command::Command& command, std::string hint) {
+tl::unexpected<Error> needs_family(const command::Command& command, Message hint) {
   return fail(Errc::usage, message("'{}' needs the drive family", as_it_is(command.path)), std::move(hint));
 }
 
@@ -144,10 +145,10 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
       const auto [fits, proven] = suggested(session, *identity, drive::find_families(options_.drive_folders));
       if (fits.empty()) return needs_family(*run.command, no_family_hint());
       if (fits.size() > 1 || (changes && !proven))
-        return needs_family(
-            *run.command, formatted("the identity of node {} fits {} (a guess, not proof): if the nameplate "
+        return needs_family(*run.command,
+                            message("the identity of node {} fits {} (a guess, not proof): if the nameplate "
                                     "agrees, add -d {}",
-                                    node, one_of(fits), fits.front()));
+                                    node_name(node), one_of(fits), as_it_is(fits.front())));
       run.context.notices.push_back(
           proven ? message("node {} is a {}: its identity proves it", node_name(node), fits.front())
                  : message("node {} is taken for {}, which its identity fits: a guess, not proof; what "
@@ -158,9 +159,10 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
   }
   if (changes && found->second.guessed)
     return needs_family(
-        *run.command, formatted("node {} is taken for {} by its identity, a guess: if the nameplate agrees, "
-                                "add -d {}",
-                                node, found->second.family, found->second.family));
+        *run.command,
+        message("node {} is taken for {} by its identity, a guess: if the nameplate agrees, "
+                "add -d {}",
+                node_name(node), as_it_is(found->second.family), as_it_is(found->second.family)));
   return found->second.family;
 }
 
@@ -187,11 +189,11 @@ std::string Shell::family_by_identity(Session& session, std::uint8_t node) {
   return fits.size() == 1 && is_own(fits.front()) ? fits.front() : std::string();
 }
 
-std::string Shell::no_family_hint() const {
+Message Shell::no_family_hint() const {
   std::vector<std::string> names;
   for (const auto& family : drive::find_families(options_.drive_folders)) names.push_back(family.name);
-  return names.empty() ? std::string("add -d FILE.eds or -d FILE.xml")
-                       : formatted("add -d {}, or -d with an .eds or .xml file", one_of(names));
+  return names.empty() ? Message("add -d FILE.eds or -d FILE.xml")
+                       : message("add -d {}, or -d with an .eds or .xml file", one_of(names));
 }
 
 /// Says what the drives of the line are, where that can be found out.

@@ -61,8 +61,8 @@ Result<void> check_line(Shell& shell, const WrittenLine& line) {
   if (settings.nodes != line.place)
     return fail(Errc::refused,
                 message("the last write was made with {} in use, and now {} is",
-                        line.place.empty() ? "no node" : line.place,
-                        settings.nodes.empty() ? "none" : settings.nodes),
+                        line.place.empty() ? Message("no node") : Message(as_it_is(line.place)),
+                        settings.nodes.empty() ? Message("none") : Message(as_it_is(settings.nodes))),
                 line.place.empty() ? "`param set` writes it by hand"
                                    : message("`use {}`, and then `undo`", as_it_is(line.place)));
   settings.bus = line.bus;

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "cli/batch/batch.hpp"
 #include "command/prompt_words.hpp"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::command {

@@ -7,6 +7,7 @@
 #include "base/csv.hpp"
 #include "base/file.hpp"
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
 #include "drive/everyday_words.hpp"

@@ -161,7 +161,8 @@ class ParameterConversion {
     if (range.empty()) return;
     const auto take = [&](std::string& own, const std::string& of_range, std::string_view what) {
       if (!own.empty() && own != of_range)
-        wrong(row.line, message("{} is {}, but the range is '{}'", what, as_it_is(own), as_it_is(range)),
+        wrong(row.line,
+              message("{} is {}, but the range is '{}'", as_it_is(what), as_it_is(own), as_it_is(range)),
               "write the limits once");
       own = of_range;
     };

@@ -141,7 +141,8 @@ void compare_with_sheet(ForeignRow& row, std::string_view file, std::vector<Erro
       errors.push_back(file_error(
           file, row.line,
           message("{}: {} is {} here and {} in the data sheet (raw numbers, by the scale {})",
-                  as_it_is(row.id), one.field, as_it_is(*one.cell), as_it_is(sheet), as_it_is(row.scale)),
+                  as_it_is(row.id), as_it_is(one.field), as_it_is(*one.cell), as_it_is(sheet),
+                  as_it_is(row.scale)),
           message("correct the number or the scale, or leave the cell empty; the data sheet has {}, which is "
                   "{:.10g} {} by this scale",
                   as_it_is(sheet), od::to_double(one.of_sheet->value) * *scale, as_it_is(row.unit))));
@@ -151,8 +152,8 @@ void compare_with_sheet(ForeignRow& row, std::string_view file, std::vector<Erro
                                 as_it_is(sheet)));
     } else {
       notices.push_back(message("{}:{}: {}: {} is {} here and {} in the data sheet: the data sheet is used",
-                                as_it_is(file), row.line, as_it_is(row.id), one.field, as_it_is(*one.cell),
-                                as_it_is(sheet)));
+                                as_it_is(file), row.line, as_it_is(row.id), as_it_is(one.field),
+                                as_it_is(*one.cell), as_it_is(sheet)));
       *one.cell = sheet;
     }
   }

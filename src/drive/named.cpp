@@ -5,6 +5,7 @@
 
 #include "base/folded.hpp"
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "drive/maker_parameters.hpp"
 #include "drive/name_key.hpp"
@@ -136,7 +137,7 @@ std::vector<const od::Parameter*> parameters_named(const Profile& profile, std::
   return out;
 }
 
-std::string near_names(const Profile& profile, std::string_view text, bool objects) {
+Message near_names(const Profile& profile, std::string_view text, bool objects) {
   constexpr std::size_t kMost = 3;
   std::vector<std::string> near;
   const auto add = [&](std::string name) {
@@ -158,16 +159,16 @@ std::string near_names(const Profile& profile, std::string_view text, bool objec
       add(target.parameter != nullptr ? numbered_name(*target.parameter) : written_name(profile, target));
   else
     for (const auto* parameter : parameters_named(profile, text, Match::part)) add(numbered_name(*parameter));
-  return near.empty() ? std::string() : formatted("did you mean {}?", one_of(near));
+  return near.empty() ? Message() : message("did you mean {}?", one_of(near));
 }
 
-std::string near_words(const Profile& profile, std::string_view text) {
+Message near_words(const Profile& profile, std::string_view text) {
   std::set<std::string> words;
   for (const auto& object : profile.dictionary.objects())
     for (const auto& entry : object.entries)
       for (auto& word : key_words(entry.name)) words.insert(std::move(word));
   const auto near = nearest(lower(text), std::vector(words.begin(), words.end()));
-  return near.empty() ? std::string() : near_names(profile, near.front(), true);
+  return near.empty() ? Message() : near_names(profile, near.front(), true);
 }
 
 std::string numbered_name(const od::Parameter& parameter) { return parameter.id + " " + parameter.name; }

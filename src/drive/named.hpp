@@ -21,10 +21,10 @@ std::vector<const od::Parameter*> parameters_named(const Profile& profile, std::
                                                    Match match);
 
 /// What a user may have meant by a name that nothing has, as a sentence; empty where nothing is near.
-std::string near_names(const Profile& profile, std::string_view text, bool objects);
+Message near_names(const Profile& profile, std::string_view text, bool objects);
 
 /// The same by the word that is spelt like it in some name (`temprature`).
-std::string near_words(const Profile& profile, std::string_view text);
+Message near_words(const Profile& profile, std::string_view text);
 
 /// `Pr1.01 1st velocity loop gain`
 std::string numbered_name(const od::Parameter& parameter);

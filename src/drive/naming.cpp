@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "drive/maker_parameters.hpp"
 #include "drive/name_key.hpp"

@@ -22,6 +22,7 @@
 
 #include "base/format.hpp"
 #include "base/object_address.hpp"
+#include "base/offer.hpp"
 #include "base/result.hpp"
 #include "base/text.hpp"
 

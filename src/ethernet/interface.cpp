@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "can/descriptor.hpp"
 
@@ -54,7 +55,7 @@ Message those_there_are() {
 
 tl::unexpected<Error> missing(const std::string& name) {
   auto hint = did_you_mean(name, ethernet_interfaces());
-  if (!hint.empty()) hint.insert(0, "; ");
+  if (!hint.empty()) hint = "; " + hint;
   return fail(Errc::bus, message("there is no interface {}", as_it_is(name)),
               those_there_are() + "; `ip link` lists all interfaces" + hint);
 }

@@ -7,6 +7,7 @@
 
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/offer.hpp"
 #include "base/pdo_index.hpp"
 #include "base/text.hpp"
 #include "od/complex_type.hpp"
@@ -114,7 +115,7 @@ const AccessRow& access_of(const IniKey& key, Findings& findings) {
   }
   std::vector<std::string> words;
   for (const auto& row : kAccess) words.emplace_back(row.word);
-  const auto guess = text.size() > 8 ? std::string() : did_you_mean(text, words);
+  const auto guess = text.size() > 8 ? std::string() : did_you_mean(text, words).text();
   findings.error(key, "unknown-access-type",
                  formatted("'{}' is not an access type; taken as ro", shown(text)),
                  guess.empty() ? "write ro, rw, wo, const, rwr or rww" : guess);

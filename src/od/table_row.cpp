@@ -4,6 +4,7 @@
 
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::od {

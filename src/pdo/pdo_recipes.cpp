@@ -16,7 +16,7 @@ using drive::PdoRecipe;
 
 /// The error of one recipe, with its PDO in front.
 tl::unexpected<Error> of(const PdoRecipe& recipe, Error error) {
-  if (error.message.text().find(recipe.pdo) == std::string::npos)
+  if (!error.message.names(recipe.pdo))
     error.message = message("{}: {}", Verbatim{recipe.pdo}, error.message);
   if (recipe.line != 0) error.line = recipe.line;
   return fail(std::move(error));

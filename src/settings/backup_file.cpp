@@ -103,8 +103,9 @@ Result<Backup> read_foreign(const BackupSource& source, const drive::Profile& pr
 /// What the reader of a restore must know: no checksum, no identity, and what is not written.
 void tell(show::Desk& desk, const BackupSource& source, const Backup& backup) {
   // That it fits itself says nothing.
-  const auto fits =
-      backup.family == source.file ? std::string() : "; its objects and values fit " + backup.family;
+  const auto fits = backup.family == source.file
+                        ? Message()
+                        : Message("; its objects and values fit ") + as_it_is(backup.family);
   desk.notices.push_back(message("{} is a {}: it proves neither its drive nor its completeness{}",
                                  as_it_is(source.file), title_of(source.format), fits));
   constexpr std::size_t kMostNamed = 4;

@@ -21,9 +21,8 @@ bool is_file(const fs::path& path) {
 
 fs::path lock_of(const fs::path& before) { return journal_of(before).string() + ".lock"; }
 
-tl::unexpected<Error> refuse_second(const std::string& title, std::uint8_t node) {
-  return fail(Errc::refused,
-              message("another servoctl is restoring {} into node {}", as_it_is(title), node_name(node)),
+tl::unexpected<Error> refuse_second(const Message& title, std::uint8_t node) {
+  return fail(Errc::refused, message("another servoctl is restoring {} into node {}", title, node_name(node)),
               "wait until it ends, or find it with `ps`");
 }
 
@@ -33,10 +32,10 @@ Origin origin_of(const show::Desk& desk, const Backup& backup, const session::Id
   auto what = show::other_kind(backup.identity, drive);
   const bool same_serial = drive.serial.value_or(0) != 0 && backup.identity.serial == drive.serial;
   if (what.empty() && !same_serial) what = show::change_of(backup.identity, drive);
-  if (!what.empty()) return {Origin::Kind::other, formatted("{} differs", what), backup.bus};
+  if (!what.empty()) return {Origin::Kind::other, message("{} differs", what), backup.bus};
   const bool same_bus = session::canonical_url(backup.bus) == session::canonical_url(desk.session->url());
   if (same_serial || same_bus) return {};
-  return {Origin::Kind::elsewhere, formatted("it is of the drive on {}", backup.bus), backup.bus};
+  return {Origin::Kind::elsewhere, message("it is of the drive on {}", as_it_is(backup.bus)), backup.bus};
 }
 
 std::vector<fs::path> before_names(const fs::path& usual) {
@@ -50,7 +49,7 @@ std::vector<fs::path> before_names(const fs::path& usual) {
 /// One look through the names.
 class BeforeFileSearch {
  public:
-  BeforeFileSearch(const show::Desk& desk, const fs::path& usual, const std::string& title,
+  BeforeFileSearch(const show::Desk& desk, const fs::path& usual, const Message& title,
                    const session::Identity& drive, bool holds)
       : desk_(&desk), names_(before_names(usual)), title_(title), drive_(drive), holds_(holds) {}
 
@@ -60,8 +59,7 @@ class BeforeFileSearch {
     if (const auto own = choose(own_); !own || *own) return finish(own);
     if (const auto clear = refuse_doubt(); !clear) return fail(clear.error());
     if (const auto free = choose(free_); !free || *free) return finish(free);
-    return fail(Errc::file,
-                message("{} has a file of old values of {} drives already", as_it_is(title_), kMostDrives),
+    return fail(Errc::file, message("{} has a file of old values of {} drives already", title_, kMostDrives),
                 "move those that are not needed any more into another folder");
   }
 
@@ -127,7 +125,7 @@ class BeforeFileSearch {
       return fail(drive_error(
           Errc::refused, drive_.node,
           message("a restore of {} was interrupted on {}, and nothing tells whether this is that drive",
-                  as_it_is(title_), as_it_is(other.origin.bus)),
+                  title_, as_it_is(other.origin.bus)),
           message("where it is, `restore {} -n {} --force` restores the old values; where it is not, move "
                   "that file and its journal into another folder",
                   as_it_is(other.path.string()), node_name(drive_.node))));
@@ -144,7 +142,7 @@ class BeforeFileSearch {
 
   const show::Desk* desk_;
   std::vector<fs::path> names_;
-  std::string title_;
+  Message title_;
   session::Identity drive_;
   bool holds_;
   std::vector<fs::path> own_;
@@ -152,12 +150,12 @@ class BeforeFileSearch {
   BeforeFile out_;
 };
 
-Result<BeforeFile> BeforeFile::take(const show::Desk& desk, const fs::path& usual, const std::string& title,
+Result<BeforeFile> BeforeFile::take(const show::Desk& desk, const fs::path& usual, const Message& title,
                                     const session::Identity& drive) {
   return BeforeFileSearch(desk, usual, title, drive, !desk.dry_run).run();
 }
 
-Result<BeforeFile> BeforeFile::find(const show::Desk& desk, const fs::path& usual, const std::string& title,
+Result<BeforeFile> BeforeFile::find(const show::Desk& desk, const fs::path& usual, const Message& title,
                                     const session::Identity& drive) {
   return BeforeFileSearch(desk, usual, title, drive, false).run();
 }

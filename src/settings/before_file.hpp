@@ -23,7 +23,7 @@ struct Origin {
     unknown     ///< Nothing that can be read says.
   };
   Kind kind = Kind::same;
-  std::string why = {};  ///< Such as `its serial number (1018h:04) differs`; empty for `same`.
+  Message why = {};      ///< Such as `its serial number (1018h:04) differs`; empty for `same`.
   std::string bus = {};  ///< Where that drive was.
 };
 
@@ -44,10 +44,10 @@ class BeforeFile {
   /// drive, and where a restore was cut off on another bus and nothing tells whether it was of this drive;
   /// Errc::file for a journal whose values cannot be read. `title` names in messages what is restored.
   static Result<BeforeFile> take(const show::Desk& desk, const std::filesystem::path& usual,
-                                 const std::string& title, const session::Identity& drive);
+                                 const Message& title, const session::Identity& drive);
   /// Where take() would find it; holds nothing, and refuses nobody who restores.
   static Result<BeforeFile> find(const show::Desk& desk, const std::filesystem::path& usual,
-                                 const std::string& title, const session::Identity& drive);
+                                 const Message& title, const session::Identity& drive);
 
   const std::filesystem::path& path() const { return path_; }
   std::filesystem::path journal() const;

@@ -20,11 +20,10 @@ class TakingUp {
     const auto found = read_journal(*desk_, before_->journal());
     if (!found) return fail(found.error());
     if (*found && !options_->resume)
-      return fail(
-          Errc::refused,
-          message("a restore of {} to node {} was interrupted", as_it_is(attempt_->title), node_name(node_)),
-          message("--resume continues it; `restore {} -n {}` restores the old values",
-                  as_it_is(before_->path().string()), node_name(node_)));
+      return fail(Errc::refused,
+                  message("a restore of {} to node {} was interrupted", attempt_->title, node_name(node_)),
+                  message("--resume continues it; `restore {} -n {}` restores the old values",
+                          as_it_is(before_->path().string()), node_name(node_)));
     if (!*found && options_->resume) return fail(nothing_to_resume(*before_, attempt_->title, node_));
     if (options_->resume) return resume(**found);
     return undo();
@@ -34,8 +33,7 @@ class TakingUp {
   Result<RestoreJournal> resume(const RestoreJournal& found) {
     if (found.checksum != checksum(*attempt_->backup) || found.node != node_)
       return fail(Errc::refused,
-                  message("{} is not the file being restored to node {}", as_it_is(attempt_->title),
-                          node_name(node_)),
+                  message("{} is not the file being restored to node {}", attempt_->title, node_name(node_)),
                   message("resuming needs the same values; `restore {} -n {}` restores the old ones",
                           as_it_is(before_->path().string()), node_name(node_)));
     options_->choice = {.with_address = found.with_address,
@@ -73,12 +71,12 @@ class TakingUp {
       return fail(
           drive_error(Errc::refused, node_,
                       message("{} has the old values of another drive, whose restore was interrupted: {}",
-                              as_it_is(attempt_->title), origin.why),
+                              attempt_->title, origin.why),
                       "--force restores them to this one; the interrupted restore stays as it is"));
     return fail(drive_error(
         Errc::refused, node_,
         message("{} has the old values of the drive on {}, and nothing tells whether this is that drive",
-                as_it_is(attempt_->title), as_it_is(origin.bus)),
+                attempt_->title, as_it_is(origin.bus)),
         "--force restores them, where it is"));
   }
 
@@ -101,7 +99,7 @@ Result<RestoreJournal> take_up_interrupted(show::Desk& desk, const BeforeFile& b
   return TakingUp(desk, before, attempt, options).run();
 }
 
-Error nothing_to_resume(const BeforeFile& before, const std::string& title, std::uint8_t node) {
+Error nothing_to_resume(const BeforeFile& before, const Message& title, std::uint8_t node) {
   const auto& others = before.passed_over();
   const auto other =
       std::find_if(others.begin(), others.end(), [](const auto& one) { return one.has_journal; });
@@ -112,8 +110,7 @@ Error nothing_to_resume(const BeforeFile& before, const std::string& title, std:
         "leave --resume out");
   return drive_error(
       Errc::refused, node,
-      message("the restore of {} that was interrupted was of another drive: {}", as_it_is(title),
-              other->origin.why),
+      message("the restore of {} that was interrupted was of another drive: {}", title, other->origin.why),
       message("leave --resume out to begin anew with this one; the old values of the other stay in {}",
               as_it_is(other->path.string())));
 }

@@ -13,7 +13,7 @@ namespace servoctl::settings {
 /// A restore into one drive, for which it is asked whether one was cut off.
 struct RestoreAttempt {
   const Backup* backup = nullptr;
-  std::string title;             ///< Of the backup, in messages.
+  Message title;                 ///< Of the backup, in messages.
   session::Identity drive;       ///< The one that is there, its node in it.
   std::filesystem::path undoes;  ///< The journal of the restore that this one takes back; empty: of none.
 };
@@ -27,6 +27,6 @@ Result<RestoreJournal> take_up_interrupted(show::Desk& desk, const BeforeFile& b
                                            const RestoreAttempt& attempt, RestoringOptions& options);
 
 /// Errc::usage, or Errc::refused where the one that was cut off was of another drive.
-Error nothing_to_resume(const BeforeFile& before, const std::string& title, std::uint8_t node);
+Error nothing_to_resume(const BeforeFile& before, const Message& title, std::uint8_t node);
 
 }  // namespace servoctl::settings

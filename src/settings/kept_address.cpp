@@ -9,11 +9,11 @@
 
 namespace servoctl::settings {
 
-bool tell_kept_address(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node) {
+bool tell_kept_address(show::Desk& desk, const Backup& backup, const Message& title, std::uint8_t node) {
   if (desk.profile == nullptr || desk.session->modbus() != nullptr) return false;
   const auto& profile = *desk.profile;
   const auto own_number = drive::place_of(profile, profile.rules.nmt.node_id);
-  const auto wanted = side_of(backup, title);
+  const auto wanted = side_of(backup, title.text());
   std::vector<ObjectAddress> objects;
   for (const auto& value : wanted.values)
     if (is_address(&profile, value.first) && (backup.identity.node == node || value.first != own_number))
@@ -31,7 +31,7 @@ bool tell_kept_address(show::Desk& desk, const Backup& backup, const std::string
     desk.notices.push_back(
         message("node {}: {} stays {}; {} has {}, which only `restore --with-address` writes",
                 node_name(node), desk.chinese ? target.label_zh() : target.label(),
-                value_text(desk.profile, drive, object, desk.chinese), as_it_is(title),
+                value_text(desk.profile, drive, object, desk.chinese), title,
                 value_text(desk.profile, wanted, object, desk.chinese)));
   }
   return differs;

@@ -35,7 +35,7 @@ Result<void> RestoreTarget::check_identity() {
   const bool force = choice_.force;
   if (backup_->family != desk_->profile->family && !force)
     return fail(Errc::refused,
-                message("{} is for {}, not for {}", as_it_is(title_), as_it_is(backup_->family),
+                message("{} is for {}, not for {}", title_, as_it_is(backup_->family),
                         as_it_is(desk_->profile->family)),
                 "--force restores what fits anyway");
   const std::uint8_t nodes[] = {node_};
@@ -46,10 +46,9 @@ Result<void> RestoreTarget::check_identity() {
   identity_ = found->front();
   const auto& drive = identity_;
   if (const auto what = show::other_kind(backup_->identity, drive); !what.empty() && !force)
-    return fail(
-        Errc::refused,
-        message("node {} is not the drive of {}: {} differs", node_name(node_), as_it_is(title_), what),
-        "--force restores what fits anyway");
+    return fail(Errc::refused,
+                message("node {} is not the drive of {}: {} differs", node_name(node_), title_, what),
+                "--force restores what fits anyway");
   const bool says_firmware = backup_->identity.revision || !backup_->identity.software_version.empty();
   if (says_firmware && !drive.by_registers &&
       (backup_->identity.revision != drive.revision ||
@@ -83,7 +82,7 @@ Result<void> RestoreTarget::check_at_rest() const {
     return fail(drive_error(Errc::refused, node_, *place,
                             message("{} is not 0: it may be enabled, or its motor turns; its settings "
                                     "cannot be changed now",
-                                    name),
+                                    as_it_is(name)),
                             "stop and disable it first; make sure that the load is held"));
   }
   return {};
@@ -156,7 +155,7 @@ Result<void> RestoreTarget::choose_values() {
 void RestoreTarget::tell_kept() const {
   if (unreachable_ > 0)
     desk_->notices.push_back(message("node {}: {} values of {} have no Modbus register and stay as they are",
-                                     node_name(node_), unreachable_, as_it_is(title_)));
+                                     node_name(node_), unreachable_, title_));
 }
 
 /// What the drive takes from its parameters at its start has to stand there too, unless the file says what
@@ -217,16 +216,15 @@ Result<void> RestoreTarget::compare_undecided() {
   const auto all = differing.size();
   left_count_ += all;
   differing.resize(std::min(all, kMostListed));
-  const auto names = fmt::to_string(fmt::join(differing, ", ")) +
-                     (all > kMostListed ? formatted(" and {} more", all - kMostListed) : std::string());
+  Message names = as_it_is(fmt::to_string(fmt::join(differing, ", ")));
+  if (all > kMostListed) names += message(" and {} more", all - kMostListed);
   left_.push_back(drive_error(
       Errc::negative, node_,
       all == 1
-          ? message("{} differs from {} and is left as it is: it is not known to be writable",
-                    as_it_is(names), as_it_is(title_))
+          ? message("{} differs from {} and is left as it is: it is not known to be writable", names, title_)
           : message("{} values differ from {} and are left as they are: it is not known whether they can be "
                     "written ({})",
-                    all, as_it_is(title_), as_it_is(names)),
+                    all, title_, names),
       message("where the manual says so, change AccessType to rw in {}",
               as_it_is(desk_->profile->data_sheet.string()))));
   return {};
@@ -259,9 +257,9 @@ std::uint32_t RestoreTarget::line_of(ObjectAddress object) const {
 }
 
 /// A drive that is cloned has no lines.
-std::string RestoreTarget::place_of(ObjectAddress object) const {
+Message RestoreTarget::place_of(ObjectAddress object) const {
   const auto line = line_of(object);
-  return line == 0 ? title_ : formatted("{}:{}", title_, line);
+  return line == 0 ? title_ : message("{}:{}", title_, line);
 }
 
 }  // namespace servoctl::settings

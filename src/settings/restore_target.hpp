@@ -27,7 +27,7 @@ struct RestoreChoice {
 class RestoreTarget {
  public:
   /// `desk` and `backup` outlive it. `title` names the backup in messages.
-  RestoreTarget(show::Desk& desk, const Backup& backup, std::string title, std::uint8_t node,
+  RestoreTarget(show::Desk& desk, const Backup& backup, Message title, std::uint8_t node,
                 const RestoreChoice& choice)
       : desk_(&desk), backup_(&backup), title_(std::move(title)), node_(node), choice_(choice) {}
 
@@ -76,12 +76,12 @@ class RestoreTarget {
   Result<void> check_each(bool copies);
   Result<void> check_value(ObjectAddress object, const Bytes& data, bool& outside) const;
   Result<void> check_pdos();
-  std::string place_of(ObjectAddress object) const;
+  Message place_of(ObjectAddress object) const;
   tl::unexpected<Error> unfit(Errc code, ObjectAddress object, const Message& what, Message hint) const;
 
   show::Desk* desk_;
   const Backup* backup_;
-  std::string title_;
+  Message title_;
   std::uint8_t node_;
   RestoreChoice choice_;
   session::Identity identity_;

@@ -23,7 +23,7 @@ using report::Value;
 /// One restore, from file to outcome.
 class Restoring {
  public:
-  Restoring(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node,
+  Restoring(show::Desk& desk, const Backup& backup, const Message& title, std::uint8_t node,
             const fs::path& before, const RestoringOptions& options, const fs::path& undoes)
       : desk_(&desk),
         backup_(&backup),
@@ -55,10 +55,9 @@ class Restoring {
     auto taken = FileLock::take(attempt_.undoes.string() + ".lock");
     if (!taken) return fail(taken.error());
     if (!*taken)
-      return fail(
-          Errc::refused,
-          message("another servoctl is restoring {} into node {}", as_it_is(title_), node_name(node_)),
-          "wait until it ends, or find it with `ps`");
+      return fail(Errc::refused,
+                  message("another servoctl is restoring {} into node {}", title_, node_name(node_)),
+                  "wait until it ends, or find it with `ps`");
     undone_lock_.emplace(std::move(**taken));
     return {};
   }
@@ -79,12 +78,12 @@ class Restoring {
     if (const auto fits = target.prepare(); !fits) return fail(fits.error());
     if (const auto same = hold_to_expected(target.present()); !same) return fail(same.error());
     auto comparison = compare(desk_->profile, {formatted("node {}", node_), node_, target.present_and_left()},
-                              {title_, node_, target.wanted_and_left()}, true, desk_->chinese);
+                              {title_.text(), node_, target.wanted_and_left()}, true, desk_->chinese);
     left_over_ = target.left();
     left_count_ = target.left_count();
     const auto to_write = target.to_write();
     if (options_.keep)
-      doubts_ = doubts_of_keeping(*desk_->profile, node_, title_, target.present(), target.asked());
+      doubts_ = doubts_of_keeping(*desk_->profile, node_, title_.text(), target.present(), target.asked());
     for (const auto& doubt : doubts_) desk_->notices.push_back(doubt);
     const bool idle = to_write == 0 && !options_.keep && left_.means.empty();
     keeps_address_ = target.keeps_address();
@@ -147,10 +146,10 @@ class Restoring {
         options_.keep ? "Store them in the drive" : "Restore its memory switch and password";
     if (different == 0)
       return left_count_ == 0
-                 ? formatted("All values of node {} already match {}. {}?", node_, title_, rest)
-                 : formatted("All other values of node {} already match {}. {}?", node_, title_, rest);
-    if (different == 1) return formatted("Write 1 value of {} to node {}?", title_, node_);
-    return formatted("Write {} values of {} to node {}?", different, title_, node_);
+                 ? formatted("All values of node {} already match {}. {}?", node_, title_.text(), rest)
+                 : formatted("All other values of node {} already match {}. {}?", node_, title_.text(), rest);
+    if (different == 1) return formatted("Write 1 value of {} to node {}?", title_.text(), node_);
+    return formatted("Write {} values of {} to node {}?", different, title_.text(), node_);
   }
 
   Result<Value> planned(const RestoreTarget& target) const {
@@ -252,7 +251,7 @@ class Restoring {
 
   show::Desk* desk_;
   const Backup* backup_;
-  std::string title_;
+  Message title_;
   std::uint8_t node_;
   fs::path before_;  ///< The usual name for the old values.
   RestoringOptions options_;
@@ -271,7 +270,7 @@ class Restoring {
 
 }  // namespace
 
-Result<Restored> put_into(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node,
+Result<Restored> put_into(show::Desk& desk, const Backup& backup, const Message& title, std::uint8_t node,
                           const fs::path& before, const RestoringOptions& options, const fs::path& undoes) {
   return Restoring(desk, backup, title, node, before, options, undoes).run();
 }

@@ -39,7 +39,7 @@ struct Restored {
 /// journal stands already Errc::refused, unless it is to be gone on with. `undoes` is the journal of the
 /// restore that this one takes back, where there is one; it goes away when all is done. The answer says what
 /// differed and how it ended; failures go to `desk.errors`.
-Result<Restored> put_into(show::Desk& desk, const Backup& backup, const std::string& title, std::uint8_t node,
+Result<Restored> put_into(show::Desk& desk, const Backup& backup, const Message& title, std::uint8_t node,
                           const std::filesystem::path& before, const RestoringOptions& options,
                           const std::filesystem::path& undoes = {});
 

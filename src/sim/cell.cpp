@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "canopen/lss.hpp"
 #include "sim/cell_spec.hpp"

@@ -7,6 +7,7 @@
 #include "base/duration.hpp"
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "canopen/node_id.hpp"
 #include "drive/naming.hpp"

@@ -8,6 +8,7 @@
 #include "base/duration.hpp"
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 
 namespace servoctl::sim {

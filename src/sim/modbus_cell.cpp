@@ -5,6 +5,7 @@
 
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "sim/cell_spec.hpp"
 

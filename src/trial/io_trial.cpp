@@ -4,6 +4,7 @@
 #include <array>
 
 #include "base/format.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "drive/standard_objects.hpp"
 #include "session/stretch.hpp"

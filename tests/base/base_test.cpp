@@ -10,6 +10,7 @@
 #include "base/file.hpp"
 #include "base/number.hpp"
 #include "base/object_address.hpp"
+#include "base/offer.hpp"
 #include "base/result.hpp"
 #include "base/text.hpp"
 
@@ -183,9 +184,9 @@ TEST(Nearest, OffersTheBestFirstAndNothingFarOff) {
   EXPECT_EQ(nearest("raed", words), std::vector<std::string>{"read"});
   EXPECT_EQ(nearest("rese", words), (std::vector<std::string>{"reset", "read"}));
   EXPECT_TRUE(nearest("xyzzy", words).empty());
-  EXPECT_EQ(did_you_mean("raed", words), "did you mean read?");
-  EXPECT_EQ(did_you_mean("xyzzy", words), "");
-  EXPECT_EQ(one_of(words), "read, write, reset or scan");
+  EXPECT_EQ(did_you_mean("raed", words).text(), "did you mean read?");
+  EXPECT_EQ(did_you_mean("xyzzy", words).text(), "");
+  EXPECT_EQ(one_of(words).text(), "read, write, reset or scan");
 }
 
 TEST(Csv, ReadsTheCellsItWrites) {

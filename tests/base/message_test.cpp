@@ -61,6 +61,15 @@ TEST(MessageTest, WhatAPointerPointsToIsCopied) {
   EXPECT_EQ(part.text(), "can0: no such device");
 }
 
+/// A literal that has the letters of a name does not name it.
+TEST(MessageTest, NamesWhatStandsAtItsPlaces) {
+  Nodes nodes{{3}};
+  nodes.names = {"feeder"};
+  EXPECT_TRUE(message("{}; {}", 1, message("node {}", nodes)).names("feeder"));
+  EXPECT_TRUE(message("{} differs", as_it_is("Pn0214 Speed loop gain")).names("Pn0214"));
+  EXPECT_FALSE(message("the feeder of node {}", 3).names("feeder"));
+}
+
 TEST(MessageTest, TwoAreOneBehindTheOther) {
   auto both = Message("first");
   both += message("; {}", 2);

@@ -6,6 +6,7 @@
 #include "base/file.hpp"
 #include "base/format.hpp"
 #include "base/number.hpp"
+#include "base/offer.hpp"
 #include "base/text.hpp"
 #include "cli/batch/batch.hpp"
 #include "cli/restriction.hpp"
