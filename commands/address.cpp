@@ -90,10 +90,11 @@ Result<void> check_words(const Context& context, const Arguments& arguments) {
     return fail(Errc::usage, "--object names the object of the node-ID, and no new node-ID is given",
                 "`address 5 --object 200C:2`; `write` writes a bitrate by its code");
   if (context.nodes.empty())
-    return fail(Errc::usage, "'address' needs a node", "add -n 1; `scan` shows who is there");
+    return fail(Errc::usage, "'address' needs a node",
+                message("add -n {}; `scan` shows who is there", node_name(1)));
   if (arguments.has("new") && (context.nodes.size() != 1 || context.nodes.front() == 0))
     return fail(Errc::usage, "one drive gets a new node-ID at a time",
-                "-n 1, or several with --plan FILE.csv");
+                message("-n {}, or several with --plan FILE.csv", node_name(1)));
   return {};
 }
 

@@ -21,7 +21,7 @@ std::vector<report::Value> row_of(Context& context, const drive::Family& family)
     context.notices.push_back(message("{}; {}", rules.error().message, rules.error().hint));
   else if (errors > 0)
     context.notices.push_back(message("{0} is broken: {1} error{2}; `drives check {0}` lists them",
-                                      as_it_is(family.name), errors, errors == 1 ? "" : "s"));
+                                      as_it_is(family.name), errors, plural(errors)));
   const auto name = rules ? rules->name : std::string();
   const auto name_zh = rules ? rules->name_zh : std::string();
   const auto& shown = context.chinese && !name_zh.empty() ? name_zh : name;

@@ -84,8 +84,7 @@ Result<report::Value> run_drives_check(Context& context, const Arguments& argume
     out.emplace_back(family_record(family, found, mistakes));
     if (mistakes > 0)
       context.errors.push_back(make_error(
-          Errc::negative,
-          message("{}: {} error{}", as_it_is(family.name), mistakes, mistakes == 1 ? "" : "s"),
+          Errc::negative, message("{}: {} error{}", as_it_is(family.name), mistakes, plural(mistakes)),
           "correct them before you use the family: servoctl refuses to load it, or would use a name, size or type that is "
           "wrong"));
   }

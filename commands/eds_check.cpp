@@ -107,7 +107,7 @@ report::Record finding_record(const std::string& path, const Error& error, bool 
 }
 
 Error errors_error(const std::string& path, std::size_t errors) {
-  return make_error(Errc::negative, message("{}: {} error{}", as_it_is(path), errors, errors == 1 ? "" : "s"),
+  return make_error(Errc::negative, message("{}: {} error{}", as_it_is(path), errors, plural(errors)),
                     "the remedy column says what to change; everything else in the file is usable");
 }
 

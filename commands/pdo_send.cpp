@@ -48,10 +48,10 @@ Result<void> check_count(const show::PdoView& view, std::size_t given) {
   for (const auto& field : view.fields) names.push_back(field.name);
   std::string order;
   for (const auto& name : names) append(order, name);
-  return fail(Errc::usage,
-              message("{} carries {} value{}, {} given", view.name, names.size(),
-                      names.size() == 1 ? "" : "s", given),
-              "in this order: " + order);
+  return fail(
+      Errc::usage,
+      message("{} carries {} value{}, {} given", view.name, names.size(), plural(names.size()), given),
+      "in this order: " + order);
 }
 
 /// The frame that brings these values, and what they are in words.

@@ -38,7 +38,8 @@ Result<void> keep_part(const Context& context, settings::Backup& backup, const s
 
 Result<Value> run_restore(Context& context, const Arguments& arguments) {
   if (context.nodes.size() != 1 || context.nodes.front() == 0)
-    return fail(Errc::usage, "restore takes one node: each drive has a backup of its own", "-n 1");
+    return fail(Errc::usage, "restore takes one node: each drive has a backup of its own",
+                message("-n {}", node_name(1)));
   if (const auto alone = check_resume(arguments); !alone) return fail(alone.error());
   const std::string file(arguments.text("file"));
   const auto node = context.nodes.front();

@@ -56,6 +56,7 @@ class Writer {
 
  private:
   void add(const Verbatim& value) { values_.push_back(value.text); }
+  void add(const Words& value) { values_.push_back(value.text(", ")); }
   void add(const Nodes& value) { values_.push_back(value.text()); }
   void add(const Boxed<Message>& value) { values_.push_back(value.get()->text(*command_)); }
   template <typename T>
@@ -138,6 +139,12 @@ std::string Nodes::text() const {
   return out;
 }
 
+std::string Words::text(std::string_view between) const {
+  std::string out;
+  for (const auto& word : words) append(out, word, between);
+  return out;
+}
+
 Message::Message(std::string text) {
   if (text.empty()) return;
   literal_ = "{}";
@@ -156,6 +163,8 @@ bool Message::names(std::string_view name) const {
     if (const auto* inner = std::get_if<Boxed<Message>>(&one)) return inner->get()->names(name);
     if (const auto* text = std::get_if<std::string>(&one)) return has(*text);
     if (const auto* text = std::get_if<Verbatim>(&one)) return has(text->text);
+    if (const auto* list = std::get_if<Words>(&one))
+      return std::any_of(list->words.begin(), list->words.end(), has);
     const auto* nodes = std::get_if<Nodes>(&one);
     return nodes != nullptr && std::any_of(nodes->names.begin(), nodes->names.end(), has);
   });

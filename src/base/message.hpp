@@ -32,6 +32,13 @@ struct Verbatim {
   std::string text;
 };
 
+/// Names in a row, which stay as they are: `a, b`, in Chinese `a、b`.
+struct Words {
+  std::vector<std::string> words;
+
+  std::string text(std::string_view between) const;
+};
+
 /// What is said to a person before it is a sentence: a text of the program, the key of the catalogue, and
 /// what stands at its placeholders. It becomes a sentence where it is shown, in the language of who reads,
 /// with the names of axes and with the place of the commands in backticks.
@@ -39,7 +46,7 @@ class Message {
  public:
   /// A text that was put together elsewhere is looked at as a whole.
   using Argument =
-      std::variant<std::string, Verbatim, std::int64_t, std::uint64_t, double, Nodes, Boxed<Message>>;
+      std::variant<std::string, Verbatim, Words, std::int64_t, std::uint64_t, double, Nodes, Boxed<Message>>;
   /// What a command of the text becomes.
   using CommandForm = std::function<std::string(std::string_view command)>;
 
@@ -92,14 +99,15 @@ namespace message_details {
 
 /// What fmt checks the placeholder of such a value against.
 template <typename T>
-using Shown = std::conditional_t<std::is_same_v<T, Message> || std::is_same_v<T, Verbatim>, std::string_view,
-                                 std::conditional_t<std::is_same_v<T, Nodes>, std::string_view, T>>;
+using Shown = std::conditional_t<std::is_same_v<T, Message> || std::is_same_v<T, Verbatim> ||
+                                     std::is_same_v<T, Words> || std::is_same_v<T, Nodes>,
+                                 std::string_view, T>;
 
 template <typename T>
 Message::Argument argument(const T& value) {
   if constexpr (std::is_same_v<T, Message>)
     return Boxed<Message>(value);
-  else if constexpr (std::is_same_v<T, Verbatim> || std::is_same_v<T, Nodes>)
+  else if constexpr (std::is_same_v<T, Verbatim> || std::is_same_v<T, Words> || std::is_same_v<T, Nodes>)
     return value;
   else if constexpr (std::is_floating_point_v<T>)
     return static_cast<double>(value);
@@ -142,5 +150,12 @@ Message message(fmt::format_string<message_details::Shown<std::decay_t<Values>>.
   const fmt::string_view text = literal;
   return {std::string_view(text.data(), text.size()), {message_details::argument(values)...}};
 }
+
+/// The ending of a word or verb that is counted, which Chinese does not have.
+template <std::size_t one_size, std::size_t more_size>
+Message ending(std::size_t count, const char (&one)[one_size], const char (&more)[more_size]) {
+  return count == 1 ? Message(one) : Message(more);
+}
+inline Message plural(std::size_t count) { return ending(count, "", "s"); }
 
 }  // namespace servoctl

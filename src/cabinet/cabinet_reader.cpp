@@ -156,8 +156,7 @@ class CabinetReader {
     if (part.nodes.empty()) return fail_at(table, message("axis {}: 'node' is missing", as_it_is(pattern)));
     if (names->size() != part.nodes.size())
       return fail_at(table, message("axis {}: {} name{} for {} node{}", as_it_is(pattern), names->size(),
-                                    names->size() == 1 ? "" : "s", part.nodes.size(),
-                                    part.nodes.size() == 1 ? "" : "s"));
+                                    plural(names->size()), part.nodes.size(), plural(part.nodes.size())));
     if (names->size() > 1 && part.serial)
       return fail_at(table, message("axis {}: each drive has a serial number of its own", as_it_is(pattern)));
     for (std::size_t i = 0; i < names->size(); ++i) {

@@ -221,14 +221,14 @@ std::vector<Message> SlcanBus::take_notices() {
   if (const auto count = std::exchange(damaged_, 0); count > 0)
     out.push_back(message(
         "{}: {} damaged line{} left out: bytes were lost between adapter and computer, and frames with them",
-        as_it_is(place_.device), count, count == 1 ? " was" : "s were"));
+        as_it_is(place_.device), count, ending(count, " was", "s were")));
   if (const auto count = std::exchange(unanswered_, 0); count > 0)
     out.push_back(message("{}: {} frame{} not acknowledged by the adapter: whether {} sent is not known",
-                          as_it_is(place_.device), count, count == 1 ? " was" : "s were",
+                          as_it_is(place_.device), count, ending(count, " was", "s were"),
                           count == 1 ? "it was" : "they were"));
   if (const auto count = std::exchange(refused_late_, 0); count > 0)
     out.push_back(message("{}: the adapter refused {} frame{} after a while: {} not sent",
-                          as_it_is(place_.device), count, count == 1 ? "" : "s",
+                          as_it_is(place_.device), count, plural(count),
                           count == 1 ? "it was" : "they were"));
   return out;
 }

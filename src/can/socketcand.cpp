@@ -219,7 +219,7 @@ std::vector<Message> SocketcandBus::take_notices() {
     out.push_back(message("{} reports an error: {}", place_.server(), text));
   if (const auto count = std::exchange(damaged_, 0); count > 0)
     out.push_back(message("{}: {} element{} left out: no frame of the protocol", place_.server(), count,
-                          count == 1 ? " was" : "s were"));
+                          ending(count, " was", "s were")));
   return out;
 }
 

@@ -130,7 +130,7 @@ Result<void> check_registers(const command::Command& command, session::Session& 
 
 Error no_node(const command::Command& command) {
   return fail(Errc::usage, message("'{}' needs a node", as_it_is(command.path)),
-              "add -n 1 (or a list, or all); `scan` shows who is there")
+              message("add -n {} (or a list, or all); `scan` shows who is there", node_name(1)))
       .value();
 }
 

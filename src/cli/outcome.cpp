@@ -6,6 +6,7 @@
 #include "base/printable.hpp"
 #include "base/text.hpp"
 #include "base/utf8.hpp"
+#include "report/catalogue.hpp"
 #include "report/chinese_marks.hpp"
 #include "report/chinese_value.hpp"
 #include "report/json_writer.hpp"
@@ -132,6 +133,9 @@ Value error_record(const Outcome& outcome) {
 
 Outcome failed(Error error, Settings settings, std::string_view command) {
   Outcome out{.command = std::string(command), .settings = std::move(settings)};
+  out.told = out.settings.shows_chinese();
+  if (out.told)
+    for (auto* part : {&error.message, &error.hint}) report::put_into_chinese(*part);
   out.errors.push_back(std::move(error));
   return out;
 }

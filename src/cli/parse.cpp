@@ -247,7 +247,7 @@ class LineParser {
     return fail(
         Errc::usage,
         message("{}: '{}' is not valid for {}", command_->path, as_it_is(value), as_in_help(parameter)),
-        "write " + one_of(choices));
+        message("write {}", one_of(choices)));
   }
 
   tl::unexpected<Error> one_too_many(const std::string& word) const {

@@ -34,7 +34,8 @@ Result<motion::PanelValues> panel_values(std::string_view text) {
 
 Result<std::uint8_t> one_node(const Context& context) {
   if (context.nodes.size() == 1 && context.nodes.front() != 0) return context.nodes.front();
-  return fail(Errc::usage, "one motor at a time: this command takes one node", "-n 1");
+  return fail(Errc::usage, "one motor at a time: this command takes one node",
+              message("-n {}", node_name(1)));
 }
 
 Result<motion::MotionOptions> motion_options(const Context& context, const Arguments& arguments) {

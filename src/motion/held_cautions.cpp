@@ -30,10 +30,10 @@ Message remedy(const HeldCaution& held, const MotionUnits& units) {
   const bool restart = show::needs_restart(units.profile(), rule);
   if (!rule.others.empty())
     return message("`{}` and restart the drive; any of these inputs will do",
-                   as_it_is(lasting_setting(units.profile(), units.node(), rule.name, *rule.set)));
+                   lasting_setting(units.profile(), units.node(), rule.name, *rule.set));
   if (!held.unread && units.object(rule.name))
     return restart ? message("`{}` and restart the drive",
-                             as_it_is(lasting_setting(units.profile(), units.node(), rule.name, *rule.set)))
+                             lasting_setting(units.profile(), units.node(), rule.name, *rule.set))
                    : message("`param set {}={} -n {}` ends that", as_it_is(rule.name), *rule.set,
                              node_name(units.node()));
   return restart

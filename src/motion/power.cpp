@@ -118,7 +118,7 @@ Error Power::stuck(DriveState from, const drive::PowerStep& next) const {
     hint = "the manual's conditions for enabling are not met: inputs, main supply, brake, mode";
   const auto start = start_command();
   if (!start.empty() && !fault)
-    hint = message("some drives obey only in the state operational: `{}`; {}", as_it_is(start), hint);
+    hint = message("some drives obey only in the state operational: `{}`; {}", start, hint);
   return drive_error(Errc::negative, node_, what, hint);
 }
 

@@ -278,7 +278,9 @@ Result<EdsFile> read_eds(std::string_view text, std::string_view file) {
   const auto why = std::find_if(
       all.begin(), all.end(), [](const Diagnostic& finding) { return finding.severity == Severity::error; });
   return refuse(file, "there is no usable object in this file",
-                why == all.end() ? std::string(kHint) : to_string(*why, file));
+                why == all.end() ? Message(kHint)
+                                 : message("{}:{}:{}: {}: {} [{}]", as_it_is(file), why->line, why->column,
+                                           "error", why->message, as_it_is(why->rule)));
 }
 
 std::string to_string(const Diagnostic& diagnostic, std::string_view file) {

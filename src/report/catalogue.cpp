@@ -154,8 +154,8 @@ void put_into_chinese(Message& message, const Names* names) {
     return is_plural(literal) ? std::string_view() : chinese_word(literal);
   };
   message = message.changed(word, [names](Message::Argument& argument) {
-    if (auto* text = std::get_if<std::string>(&argument))
-      *text = is_plural(*text) ? std::string() : in_chinese(std::string_view(*text), names);
+    if (auto* text = std::get_if<std::string>(&argument)) *text = in_chinese(std::string_view(*text), names);
+    if (const auto* words = std::get_if<Words>(&argument)) argument = Verbatim{words->text("、")};
   });
 }
 

@@ -14,7 +14,7 @@ std::size_t count(const TestResult& result, Verdict verdict) {
 }
 
 std::string case_xml(const TestResult& result, const Criterion& criterion) {
-  const auto words = escaped(in_words(criterion));
+  const auto words = escaped(in_words(criterion).text());
   const auto head = formatted(R"(    <testcase classname="servoctl.{}.node-{}" name="{}" time="0")",
                               escaped(result.test), result.node, escaped(criterion.id));
   switch (criterion.verdict) {

@@ -46,7 +46,10 @@ bool is_place(std::string_view text) {
   return !text.empty() && text.find(' ') == std::string_view::npos;
 }
 
-bool is_plural(std::string_view ending) { return ending == "s" || ending == "es" || ending == "is"; }
+bool is_plural(std::string_view ending) {
+  constexpr std::string_view kEndings[] = {"s", "es", "is", " was", "s were"};
+  return std::find(std::begin(kEndings), std::end(kEndings), ending) != std::end(kEndings);
+}
 
 bool takes_too_much(const Phrase& phrase, std::size_t place, std::string_view value) {
   const bool kept = phrase.places()[place].quoted;

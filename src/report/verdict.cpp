@@ -56,16 +56,16 @@ Criterion skipped(std::string id, std::string name, std::string why) {
           .note = std::move(why)};
 }
 
-std::string in_words(const Criterion& criterion) {
+Message in_words(const Criterion& criterion) {
   const auto unit = criterion.unit.empty() ? std::string() : " " + criterion.unit;
   const auto figure = criterion.figure.is_null() ? std::string() : line_text(criterion.figure) + unit;
   const auto limit = line_text(criterion.limit) + unit;
-  auto out = figure;
-  if (criterion.relation == "<=") out = formatted("{}, at most {}", figure, limit);
-  if (criterion.relation == ">=") out = formatted("{}, at least {}", figure, limit);
-  if (criterion.relation == "=") out = formatted("{}, wanted: {}", figure, limit);
-  if (!criterion.note.empty()) append(out, criterion.note, "; ");
-  return out;
+  Message out = figure;
+  if (criterion.relation == "<=") out = message("{}, at most {}", figure, limit);
+  if (criterion.relation == ">=") out = message("{}, at least {}", figure, limit);
+  if (criterion.relation == "=") out = message("{}, wanted: {}", figure, limit);
+  if (criterion.note.empty()) return out;
+  return out.empty() ? Message(criterion.note) : message("{}; {}", out, criterion.note);
 }
 
 bool passed(const TestResult& result) {

@@ -36,7 +36,7 @@ Criterion holds(std::string id, std::string name, bool holds, std::string figure
 Criterion skipped(std::string id, std::string name, std::string why);
 
 /// `12.5 ms, at most 100 ms; in 200 reads`: figure, limit and note in one line.
-std::string in_words(const Criterion& criterion);
+Message in_words(const Criterion& criterion);
 
 /// What became of one test of one drive.
 struct TestResult {

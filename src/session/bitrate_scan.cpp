@@ -62,7 +62,7 @@ Result<void> hold_silence(can::LinkControl& link, Duration time, const std::func
   if (heard->frames > 0)
     return fail(Errc::refused,
                 message("{} is in use: {} frame{} heard at {}", as_it_is(link.name()), heard->frames,
-                        heard->frames == 1 ? " was" : "s were", at),
+                        ending(heard->frames, " was", "s were"), at),
                 "another bitrate would disturb whoever talks there; `scan` asks at this one");
   return fail(Errc::refused,
               message("{} is in use: {} errors were heard at {}", as_it_is(link.name()), heard->errors, at),

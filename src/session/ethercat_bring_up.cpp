@@ -194,14 +194,14 @@ Result<void> EtherCatNetwork::prepare(EtherCatNode& node) {
   if (found->al.state == AlState::init) return bring_up(node);
   if (found->al.state == AlState::boot)
     return fail(drive_error(Errc::negative, node.number, "it is in BOOT and takes firmware only",
-                            message("`{}`", as_it_is(state_command(node.number, NodeState::initialising)))));
+                            message("`{}`", state_command(node.number, NodeState::initialising))));
   if (!found->mailbox.exists() || !found->mailbox.doubt().empty())
     return fail(drive_error(
         Errc::protocol, node.number,
         found->mailbox.exists() ? message("its mailbox cannot be used: {}", found->mailbox.doubt())
                                 : "its mailbox is not set up, so its objects cannot be reached",
-        message("`{}` and `{}` set it up anew", as_it_is(state_command(node.number, NodeState::initialising)),
-                as_it_is(state_command(node.number, NodeState::pre_operational)))));
+        message("`{}` and `{}` set it up anew", state_command(node.number, NodeState::initialising),
+                state_command(node.number, NodeState::pre_operational))));
   // A slave takes a message with the counter of the last one, by whomever, for a repetition. One without
   // is always new.
   open_mailbox(node, found->mailbox, 0);

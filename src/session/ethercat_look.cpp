@@ -82,9 +82,8 @@ Result<std::vector<std::uint8_t>> EtherCatNetwork::nodes_with_objects() {
                 message("{}: by their SII none of the {} slaves has CoE", as_it_is(url_), seen->size()),
                 "`scan` shows what they are; a node named with -n is asked all the same");
   if (!without.empty())
-    notices_.push_back(message("-n all leaves out node{} {}: no CoE, by {} SII",
-                               without.size() == 1 ? "" : "s", node_names(without),
-                               without.size() == 1 ? "its" : "their"));
+    notices_.push_back(message("-n all leaves out node{} {}: no CoE, by {} SII", plural(without.size()),
+                               node_names(without), without.size() == 1 ? "its" : "their"));
   return out;
 }
 

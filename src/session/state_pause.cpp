@@ -73,7 +73,7 @@ Result<void> StatePause::leave(bool put_back) {
                              session_->network().state_word(NodeState::pre_operational),
                              known ? "because a restore is incomplete"
                                    : "because neither heartbeat nor guarding showed its previous state",
-                             as_it_is(session_->network().state_command(node_, NodeState::operational))));
+                             session_->network().state_command(node_, NodeState::operational)));
   return {};
 }
 

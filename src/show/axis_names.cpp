@@ -150,8 +150,8 @@ void AxisNames::put_into(Message& message) const {
   const auto name = [this](Message::Argument& argument) {
     if (auto* text = std::get_if<std::string>(&argument)) *text = in(std::string_view(*text));
     auto* nodes = std::get_if<Nodes>(&argument);
-    if (nodes == nullptr) return;
-    nodes->names.clear();
+    // A notice of another bus has its names already.
+    if (nodes == nullptr || !nodes->names.empty()) return;
     for (const auto node : nodes->numbers) nodes->names.emplace_back(of(node));
   };
   message = message.changed([](std::string_view literal) { return literal; }, name);

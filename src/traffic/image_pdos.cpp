@@ -41,7 +41,7 @@ Error no_process_data(session::Session& session, std::uint8_t node) {
                                         : std::string("servoctl has not brought it to OP")),
       message("PDOs flow in OP, and as long as servoctl keeps the drive there: `{}` at the prompt or in a "
               "batch file, then `pdo watch`",
-              as_it_is(network.state_command(node, session::NodeState::operational))));
+              network.state_command(node, session::NodeState::operational)));
 }
 
 }  // namespace

@@ -61,13 +61,15 @@ std::string say(const show::Desk& desk, std::string_view english) {
 }
 
 Error failure(const TestResult& result) {
-  std::string what;
-  for (const auto& c : result.criteria)
-    if (c.verdict == Verdict::failed)
-      what += formatted("{}{}: {}", what.empty() ? "" : ". ", c.name, report::in_words(c));
+  Message what;
+  for (const auto& c : result.criteria) {
+    if (c.verdict != Verdict::failed) continue;
+    const auto one = message("{}: {}", c.name, report::in_words(c));
+    what = what.empty() ? one : message("{}. {}", what, one);
+  }
   return drive_error(
       Errc::negative, result.node,
-      message("test {} failed: {}", result.test, what.empty() ? "nothing could be tested" : what));
+      message("test {} failed: {}", result.test, what.empty() ? Message("nothing could be tested") : what));
 }
 
 report::Record verdict_record(const show::Desk& desk, const TestResult& result, Show plot) {

@@ -46,5 +46,13 @@ TEST(AxisNames, StandApartFromChinese) {
   EXPECT_EQ(names.in("节点 3：无应答（节点 3）"), "feeder：无应答（feeder）");
 }
 
+/// Node 3 of another bus is another axis than that of the line's bus.
+TEST(AxisNames, AreThoseOfTheBusOfANotice) {
+  auto notice = message("node {}: lost", node_name(3));
+  AxisNames({{3, "lift"}}).put_into(notice);
+  AxisNames({{3, "feeder"}}).put_into(notice);
+  EXPECT_EQ(notice.text(), "lift: lost");
+}
+
 }  // namespace
 }  // namespace servoctl::show
