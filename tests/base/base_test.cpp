@@ -187,7 +187,7 @@ TEST(Nearest, OffersTheBestFirstAndNothingFarOff) {
   EXPECT_EQ(did_you_mean("raed", words).text(), "did you mean read?");
   EXPECT_EQ(did_you_mean("xyzzy", words).text(), "");
   EXPECT_EQ(one_of(words).text(), "read, write, reset or scan");
-  EXPECT_EQ(one_of(std::vector<std::string>(20000, "a")).text().size(), 3U * 20000U - 1U) << "no word nests";
+  EXPECT_EQ(one_of(std::vector<std::string>(20000, "a")).text().size(), 3U * 20000U) << "no word nests";
 }
 
 TEST(Csv, ReadsTheCellsItWrites) {
