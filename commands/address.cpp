@@ -182,7 +182,7 @@ Result<Value> change_addresses(Context& context, std::span<const AddressChange> 
   else if (follower.follows())
     context.notices.push_back(
         message("{} stays at its bitrate, and nothing is restarted: not every drive was written",
-                follower.link->name()));
+                as_it_is(follower.link->name())));
   bool awaits_bitrate = false;
   for (std::size_t i = 0; i < changes.size(); ++i) {
     if (outcomes[i].error) context.errors.push_back(*outcomes[i].error);

@@ -36,14 +36,8 @@ constexpr Parameter kBackupParameters[] = {
 
 Result<session::SettingFilter> filter_of(const Context& context, std::string_view word) {
   if (word.empty() || word == kChanged) return session::SettingFilter{};
-  auto selection = settings::selection_of(*context.profile, word);
-  if (!selection) {
-    auto error = selection.error();
-    auto hint = error.hint.text();
-    if (const auto place = hint.find("params,"); place != std::string::npos)
-      error.hint = hint.insert(place, "changed, ");
-    return fail(std::move(error));
-  }
+  auto selection = settings::selection_of(*context.profile, word, {std::string(kChanged)});
+  if (!selection) return fail(selection.error());
   return session::SettingFilter{
       [chosen = std::move(*selection)](const auto& setting) { return chosen(setting.entry->address); }};
 }

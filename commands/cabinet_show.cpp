@@ -115,8 +115,8 @@ class Differences {
 
   /// Why an axis is not held against the file: it may be another drive.
   void tell(const cabinet::Axis& axis, const Error& error) {
-    auto text = formatted("axis {}: {}", axis.name, error.message.text());
-    if (told_.insert(text).second) context_->notices.push_back(std::move(text));
+    auto text = message("axis {}: {}", as_it_is(axis.name), error.message);
+    if (told_.insert(text.text()).second) context_->notices.push_back(std::move(text));
   }
 
   Context* context_;

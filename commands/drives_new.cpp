@@ -93,7 +93,7 @@ void tell_known_fits(Context& context, const od::EdsFile& sheet) {
     context.notices.push_back(message(
         "the identity in the data sheet fits {} as well: a match proves neither family, and commands that write "
         "or move need -d",
-        fmt::join(known, ", ")));
+        NameList{known}));
 }
 
 /// Between the steps: the first three read files of any size, the last one writes.
@@ -140,7 +140,7 @@ Result<Made> make_family(Context& context, const Arguments& arguments) {
   out.parameters = params->rows;
   out.faults = faults->rows;
   if (const auto findings = sheet->diagnostics.size(); findings > 0)
-    context.notices.push_back(message("{}: {} errors, {} warnings; `eds check` explains them", from,
+    context.notices.push_back(message("{}: {} errors, {} warnings; `eds check` explains them", as_it_is(from),
                                       sheet->error_count(), sheet->warning_count()));
   return out;
 }

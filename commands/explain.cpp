@@ -212,9 +212,10 @@ Result<report::Value> run_explain(Context& context, const Arguments& arguments) 
     if (auto absent = show::not_in_manual(query, *context.profile); !absent.empty())
       return fail(Errc::negative, std::move(absent));
   if (is_of_the_standard_alone(context, query, all))
-    return fail(Errc::negative,
-                message("not on this drive: {} has no '{}'", context.profile->family, as_it_is(said)),
-                message("`explain {}` without -d shows the meaning in the standard", as_it_is(said)));
+    return fail(
+        Errc::negative,
+        message("not on this drive: {} has no '{}'", as_it_is(context.profile->family), as_it_is(said)),
+        message("`explain {}` without -d shows the meaning in the standard", as_it_is(said)));
   if (all.empty()) return no_entry_found(context, *shelf, query);
   note_absent(context, query);
   return told(context, all, in_families);

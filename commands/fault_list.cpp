@@ -30,7 +30,7 @@ Result<report::Value> run_fault_list(Context& context, const Arguments& argument
     if (wanted_fault(fault, pattern)) found.push_back(&fault);
   if (found.empty())
     return fail(Errc::negative,
-                message("no fault of {} matches '{}'", context.profile->family, as_it_is(pattern)),
+                message("no fault of {} matches '{}'", as_it_is(context.profile->family), as_it_is(pattern)),
                 "`fault list` shows all");
   if (found.size() > show::kFewFaults) return report::Value(show::fault_table(found, context.chinese));
   report::List out;

@@ -97,7 +97,8 @@ std::string question_lss_set_bitrate(const LssBitrateChange& change, const Bitra
 void tell_bitrate(Context& context, const LssBitrateChange& wish, const BitrateSwitch& follower) {
   if (follower.follows()) return;
   if (follower.link != nullptr)
-    context.notices.push_back(message("{} is left alone: {}", follower.link->name(), follower.why_not));
+    context.notices.push_back(
+        message("{} is left alone: {}", as_it_is(follower.link->name()), follower.why_not));
   const auto url = session::canonical_url(context.session->url());
   if (!wish.delay_ms)
     context.notices.push_back(
@@ -120,7 +121,7 @@ void tell_bitrate(Context& context, const LssBitrateChange& wish, const BitrateS
   if (!wish.bitrate || (follower.link && follower.before.bitrate == wish.bitrate)) return;
   context.notices.push_back(message(
       "{} the interface has to change as well: `bus up {} --bitrate {}`; then `lss inquire` or `scan`",
-      wish.delay_ms ? "now" : "then", as_it_is(url), as_it_is(*wish.bitrate)));
+      wish.delay_ms ? "now" : "then", as_it_is(url), *wish.bitrate));
 }
 
 /// How the interface goes with the slaves, where they change now.

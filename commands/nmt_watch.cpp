@@ -105,7 +105,7 @@ class Log {
       row->gone = lost;
       row->emergencies += std::holds_alternative<canopen::Emergency>(event.what) ? event.times : 0;
       const std::chrono::duration<double> time = event.time - begin_;
-      const auto text = show::notice_text(event, context_->profile, context_->chinese);
+      const auto text = show::notice_text(event, context_->profile, context_->chinese).text();
       report::Record record{
           {"time", time.count()}, {"node", event.node}, {"event", event_name(event)}, {"text", text}};
       context_->emit(record, formatted("{:10.3f}  {}", time.count(), text));
@@ -176,7 +176,7 @@ class Log {
     Message what;
     Message hint = "try --guard 1s";
     if (row.lost > 0 && was_there(row)) {
-      what = message("was lost {} time{}", row.lost, row.lost == 1 ? Message() : Message("s"));
+      what = message("was lost {} time{}", row.lost, plural(row.lost));
       hint = {};
     } else if (regular(row)) {
       return;

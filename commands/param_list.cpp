@@ -37,11 +37,11 @@ Result<report::Value> run_param_list(Context& context, const Arguments& argument
   if (found.empty()) {
     if (context.chinese)
       for (auto& group : groups) group = report::chinese_word(group);
-    return fail(Errc::negative,
-                message("no parameter of {} matches '{}'", context.profile->family, as_it_is(pattern)),
-                groups.empty()
-                    ? std::string("`param search WORD` looks for words in names")
-                    : message("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
+    return fail(
+        Errc::negative,
+        message("no parameter of {} matches '{}'", as_it_is(context.profile->family), as_it_is(pattern)),
+        groups.empty() ? std::string("`param search WORD` looks for words in names")
+                       : message("groups: {}; `param search WORD` looks for words in names", one_of(groups)));
   }
   return report::Value(show::parameter_table(found, context.chinese));
 }

@@ -41,8 +41,8 @@ Result<std::vector<WantedValue>> wanted_values(const Context& context, const Arg
     });
     if (same != out.end())
       return fail(Errc::usage,
-                  message("two values for one parameter: {}={} and {}={}", same->id, same->value,
-                          assignment.id, assignment.value),
+                  message("two values for one parameter: {}={} and {}={}", as_it_is(same->id),
+                          as_it_is(same->value), as_it_is(assignment.id), as_it_is(assignment.value)),
                   "nothing was written; say each parameter once");
     out.push_back({*target, assignment.id, assignment.value});
   }

@@ -28,9 +28,10 @@ Result<const drive::PdoPreset*> preset_of(const Context& context, const Argument
   if (found != presets.end()) return &*found;
   std::vector<std::string> names;
   for (const auto& preset : presets) names.push_back(preset.name);
-  return fail(Errc::usage,
-              message("the manual of {} has no mapping for '{}'", context.profile->family, as_it_is(word)),
-              names.empty() ? "it has none; `pdo map` makes one" : message("use {}", one_of(names)));
+  return fail(
+      Errc::usage,
+      message("the manual of {} has no mapping for '{}'", as_it_is(context.profile->family), as_it_is(word)),
+      names.empty() ? "it has none; `pdo map` makes one" : message("use {}", one_of(names)));
 }
 
 Result<void> check_pdo_preset(Context& context, const Arguments& arguments) {

@@ -36,7 +36,7 @@ constexpr Parameter kReadParameters[] = {
 Result<drive::Target> readable_target(const Context& context, std::uint8_t node, const std::string& word) {
   auto target = drive::resolve(context.profile, word, drive::Match::part);
   if (target && !od::readable(drive::meaning(*target, node).access))
-    return fail(Errc::usage, "'" + word + "' is write-only", "it can be written, not read");
+    return fail(Errc::usage, message("'{}' is write-only", as_it_is(word)), "it can be written, not read");
   return target;
 }
 
@@ -58,13 +58,14 @@ std::vector<drive::Target> readable_entries(const Context& context, std::uint8_t
 Result<std::vector<drive::Target>> fitting_targets(const Context& context, std::uint8_t node,
                                                    const std::string& pattern) {
   if (context.profile == nullptr)
-    return fail(Errc::usage, "a pattern needs the object dictionary: '" + pattern + "'", "add -d FAMILY");
+    return fail(Errc::usage, message("a pattern needs the object dictionary: '{}'", as_it_is(pattern)),
+                "add -d FAMILY");
   auto out = readable_entries(context, node, [&](const od::Object& object, const od::Entry& entry) {
     return show::fits(pattern, to_string(entry.address)) || show::fits(pattern, entry.name) ||
            show::fits(pattern, drive::entry_name(object, entry));
   });
   if (out.empty())
-    return fail(Errc::usage, "no object that can be read fits '" + pattern + "'",
+    return fail(Errc::usage, message("no object that can be read fits '{}'", as_it_is(pattern)),
                 message("`objects '{}'` lists what fits", as_it_is(pattern)));
   return out;
 }

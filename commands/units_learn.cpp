@@ -120,9 +120,10 @@ Result<Learn> learn_of(Context& context, const Arguments& arguments, std::uint8_
     const auto ways = rules.units.find(drive::Measure::increments_per_turn);
     const auto told = ways == rules.units.end() ? std::string() : show::ways_text(ways->second);
     return fail(Errc::refused,
-                told.empty() ? message("{} has no speed monitor to measure with", context.profile->family)
-                             : message("{} reports the counts per revolution itself: {}",
-                                       context.profile->family, told),
+                told.empty()
+                    ? message("{} has no speed monitor to measure with", as_it_is(context.profile->family))
+                    : message("{} reports the counts per revolution itself: {}",
+                              as_it_is(context.profile->family), told),
                 told.empty() ? std::string(motion::kOtherWay) : "`units show` reads them");
   }
   const auto monitor = drive::resolve(context.profile, rules.learn.speed);

@@ -44,7 +44,7 @@ Result<Value> run_verify(Context& context, const Arguments& arguments) {
       context.errors.push_back(read.error());
       continue;
     }
-    settings::Side actual{formatted("node {}", node), node, {}};
+    settings::Side actual{formatted("node {}", node), node, {}, true};
     for (const auto& entry : *read)
       if (entry.bytes) actual.values.emplace(entry.object, *entry.bytes);
     auto comparison = settings::compare(context.profile, expected, actual, true, context.chinese);

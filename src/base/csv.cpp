@@ -107,8 +107,8 @@ std::size_t CsvTable::column(std::string_view name) const {
 bool CsvTable::has_columns(std::span<const std::string_view> needed, std::string_view file,
                            std::vector<Error>& errors) const {
   bool all = true;
-  std::string there;
-  for (const auto& each : columns) append(there, formatted("'{}'", each));
+  NameList there;
+  for (const auto& each : columns) there.words.push_back(formatted("'{}'", each));
   for (const auto name : columns.empty() ? std::span<const std::string_view>() : needed) {
     if (column(name) < columns.size()) continue;
     errors.push_back(file_error(file, 1, message("column '{}' is missing", as_it_is(name)),

@@ -32,9 +32,9 @@ std::optional<uid_t> sudo_user() {
                                                     : std::nullopt;
 }
 
-std::string user_name(uid_t user) {
+Message user_name(uid_t user) {
   const auto* entry = ::getpwuid(user);
-  return entry == nullptr ? formatted("the user {}", user) : formatted("the user {}", entry->pw_name);
+  return entry == nullptr ? message("the user {}", user) : message("the user {}", as_it_is(entry->pw_name));
 }
 
 /// User private groups: Debian gives each user a group of the same name, and a umask of 002 may go with it.

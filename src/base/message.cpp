@@ -15,13 +15,8 @@ namespace {
 
 using Values = fmt::dynamic_format_arg_store<fmt::format_context>;
 
-/// What stands before nodes, and goes where the first has a name.
+/// Words before nodes, which go where the first has a name.
 constexpr std::array<std::string_view, 3> kLeads{"nodes ", "node ", "节点 "};
-
-bool ends_with_character(std::string_view text) {
-  return text.size() >= 3 && static_cast<unsigned char>(text[text.size() - 3]) >= 0xE4 &&
-         static_cast<unsigned char>(text[text.size() - 3]) <= 0xE9;
-}
 
 bool is_figure(char c) { return c >= '0' && c <= '9'; }
 
@@ -56,7 +51,7 @@ class Writer {
 
  private:
   void add(const Verbatim& value) { values_.push_back(value.text); }
-  void add(const Words& value) { values_.push_back(value.text(", ")); }
+  void add(const NameList& value) { values_.push_back(value.text(", ")); }
   void add(const Nodes& value) { values_.push_back(value.text()); }
   void add(const Boxed<Message>& value) { values_.push_back(value.get()->text(*command_)); }
   template <typename T>
@@ -64,7 +59,7 @@ class Writer {
     values_.push_back(value);
   }
 
-  /// A backtick: what stands before it is text, or a command.
+  /// A backtick: before it is text, or a command.
   void turn_at(bool more) {
     out_ += begun_ ? (*command_)(piece_) : piece_;
     out_ += '`';
@@ -113,7 +108,7 @@ class Writer {
     for (const auto lead : kLeads) {
       if (!piece_.ends_with(lead)) continue;
       piece_.resize(piece_.size() - lead.size());
-      // Between Chinese and a name stands a blank, as between Chinese and the number.
+      // Between Chinese and a name is a blank, as between Chinese and the number.
       if (ends_with_character(piece_)) piece_ += ' ';
       return;
     }
@@ -139,7 +134,7 @@ std::string Nodes::text() const {
   return out;
 }
 
-std::string Words::text(std::string_view between) const {
+std::string NameList::text(std::string_view between) const {
   std::string out;
   for (const auto& word : words) append(out, word, between);
   return out;
@@ -163,11 +158,19 @@ bool Message::names(std::string_view name) const {
     if (const auto* inner = std::get_if<Boxed<Message>>(&one)) return inner->get()->names(name);
     if (const auto* text = std::get_if<std::string>(&one)) return has(*text);
     if (const auto* text = std::get_if<Verbatim>(&one)) return has(text->text);
-    if (const auto* list = std::get_if<Words>(&one))
+    if (const auto* list = std::get_if<NameList>(&one))
       return std::any_of(list->words.begin(), list->words.end(), has);
     const auto* nodes = std::get_if<Nodes>(&one);
     return nodes != nullptr && std::any_of(nodes->names.begin(), nodes->names.end(), has);
   });
+}
+
+bool Message::says(std::string_view words) const {
+  return literal_.find(words) != std::string_view::npos ||
+         std::any_of(arguments_.begin(), arguments_.end(), [words](const Argument& one) {
+           const auto* inner = std::get_if<Boxed<Message>>(&one);
+           return inner != nullptr && inner->get()->says(words);
+         });
 }
 
 Message operator+(const Message& first, const Message& second) {

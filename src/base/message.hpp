@@ -33,20 +33,20 @@ struct Verbatim {
 };
 
 /// Names in a row, which stay as they are: `a, b`, in Chinese `a、b`.
-struct Words {
+struct NameList {
   std::vector<std::string> words;
 
   std::string text(std::string_view between) const;
 };
 
 /// What is said to a person before it is a sentence: a text of the program, the key of the catalogue, and
-/// what stands at its placeholders. It becomes a sentence where it is shown, in the language of who reads,
+/// the values of its placeholders. It becomes a sentence where it is shown, in the language of who reads,
 /// with the names of axes and with the place of the commands in backticks.
 class Message {
  public:
   /// A text that was put together elsewhere is looked at as a whole.
-  using Argument =
-      std::variant<std::string, Verbatim, Words, std::int64_t, std::uint64_t, double, Nodes, Boxed<Message>>;
+  using Argument = std::variant<std::string, Verbatim, NameList, std::int64_t, std::uint64_t, double, Nodes,
+                                Boxed<Message>>;
   /// What a command of the text becomes.
   using CommandForm = std::function<std::string(std::string_view command)>;
 
@@ -84,9 +84,13 @@ class Message {
   /// Whether a place, also of a message within, has this name: then it need not be put before.
   bool names(std::string_view name) const;
 
+  /// Whether its text, also of a message within, has these words of the program: what stands at the places
+  /// is not looked at.
+  bool says(std::string_view words) const;
+
   bool operator==(const Message& other) const { return text() == other.text(); }
 
-  /// One behind the other.
+  /// The second after the first.
   friend Message operator+(const Message& first, const Message& second);
   Message& operator+=(const Message& more) { return *this = *this + more; }
 
@@ -100,14 +104,14 @@ namespace message_details {
 /// What fmt checks the placeholder of such a value against.
 template <typename T>
 using Shown = std::conditional_t<std::is_same_v<T, Message> || std::is_same_v<T, Verbatim> ||
-                                     std::is_same_v<T, Words> || std::is_same_v<T, Nodes>,
+                                     std::is_same_v<T, NameList> || std::is_same_v<T, Nodes>,
                                  std::string_view, T>;
 
 template <typename T>
 Message::Argument argument(const T& value) {
   if constexpr (std::is_same_v<T, Message>)
     return Boxed<Message>(value);
-  else if constexpr (std::is_same_v<T, Verbatim> || std::is_same_v<T, Words> || std::is_same_v<T, Nodes>)
+  else if constexpr (std::is_same_v<T, Verbatim> || std::is_same_v<T, NameList> || std::is_same_v<T, Nodes>)
     return value;
   else if constexpr (std::is_floating_point_v<T>)
     return static_cast<double>(value);
@@ -133,7 +137,7 @@ Nodes node_names(const Numbers& numbers) {
   return {{numbers.begin(), numbers.end()}};
 }
 
-/// What stands in a message as it is: Verbatim of a text, and numbers as they are.
+/// What a message shows as it is: Verbatim of a text, and numbers as they are.
 template <typename T>
 auto as_it_is(const T& value) {
   if constexpr (std::is_convertible_v<const T&, std::string_view>)

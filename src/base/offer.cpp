@@ -19,7 +19,7 @@ Message one_of(std::span<const std::string> words) {
   if (words.empty()) return {};
   if (words.size() == 1) return as_it_is(words.front());
   const auto first = words.first(words.size() - 1);
-  return message("{} or {}", Words{{first.begin(), first.end()}}, as_it_is(words.back()));
+  return message("{} or {}", NameList{{first.begin(), first.end()}}, as_it_is(words.back()));
 }
 
 }  // namespace servoctl

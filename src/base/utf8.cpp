@@ -109,6 +109,11 @@ bool ends_in_chinese(std::string_view text) {
   return text.size() >= kBytes && begins_in_chinese(text.substr(text.size() - kBytes));
 }
 
+bool ends_with_character(std::string_view text) {
+  return ends_in_chinese(text) && has_chinese(text.substr(text.size() - 3)) &&
+         text[text.size() - 3] != '\xE3';
+}
+
 std::size_t columns(char32_t c) {
   if (is_in(kCombining, c)) return 0;
   return is_in(kWide, c) ? 2 : 1;

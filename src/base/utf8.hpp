@@ -30,6 +30,9 @@ bool has_chinese(std::string_view text);
 bool begins_in_chinese(std::string_view text);
 bool ends_in_chinese(std::string_view text);
 
+/// Whether the last character is Chinese, and none of its marks.
+bool ends_with_character(std::string_view text);
+
 /// Columns the character takes on a terminal: two for East Asian wide ones, none for combining ones.
 std::size_t columns(char32_t c);
 

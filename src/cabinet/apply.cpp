@@ -96,7 +96,7 @@ class Applying {
         return drive_error(Errc::refused, node, "it is energised: its settings cannot be changed now",
                            "`disable` de-energises it; make sure that the load is held");
       if (need.kind == AxisNeed::Kind::password && !options_->unlock && has_password(*run.station.profile))
-        return drive_error(Errc::refused, node, message("its password locks {}", fmt::join(need.names, ", ")),
+        return drive_error(Errc::refused, node, message("its password locks {}", NameList{need.names}),
                            "add --unlock, which gives it and takes it back after");
     }
     return std::nullopt;
@@ -262,7 +262,7 @@ class Applying {
     names.resize(std::min(all, kMostNamed));
     desk_->notices.push_back(
         message("axis {}: whether a {} keeps {}{} is not stated: `cabinet plan` after a power cycle tells",
-                run.look->axis->name, run.look->axis->family, fmt::join(names, ", "),
+                as_it_is(run.look->axis->name), as_it_is(run.look->axis->family), NameList{names},
                 all > kMostNamed ? message(" and {} more", all - kMostNamed) : std::string()));
   }
 

@@ -22,11 +22,11 @@ Result<void> hold_family(show::Desk& desk, const Axis& axis, std::span<const dri
   const auto verdict = session::judge_family(*identity, *desk.profile, families);
   if (verdict.kind == FamilyVerdict::Kind::contradicted)
     return other_drive(axis, verdict.object.value_or(objects::kDeviceType),
-                       message("not a {}: {}", desk.profile->family, verdict.why),
+                       message("not a {}: {}", as_it_is(desk.profile->family), verdict.why),
                        "is another drive at this node, or is `family` wrong? `scan` shows who is there");
   if (verdict.kind == FamilyVerdict::Kind::unproven)
     desk.notices.push_back(message("node {}: nothing proves that it is a {}: {}", node_name(axis.node),
-                                   desk.profile->family, verdict.why));
+                                   as_it_is(desk.profile->family), verdict.why));
   session::be_wary_of_family(*desk.session, axis.node, *desk.profile);
   if (const auto heard = desk.session->listen(); !heard) return heard;
   return session::refuse_duplicate(*desk.session, axis.node);

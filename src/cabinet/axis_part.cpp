@@ -133,12 +133,14 @@ Result<void> read_parameters(const toml::node& node, std::string_view file, std:
   for (const auto& [key, value] : *table) {
     auto text = value_text(value);
     if (!text)
-      return reader.fail_at(value, formatted("the value of '{}' is no number and no text", key.str()));
+      return reader.fail_at(value,
+                            message("the value of '{}' is no number and no text", as_it_is(key.str())));
     const Place at{key.source().begin.line, key.source().begin.column};
     const auto id = drive::canonical_id(key.str());
     const auto same = [&id](const Setting& other) { return drive::canonical_id(other.name) == id; };
     if (const auto twice = std::find_if(out.begin(), out.end(), same); twice != out.end())
-      return reader.fail_at(value, formatted("'{}' and '{}' are the same", twice->name, key.str()));
+      return reader.fail_at(
+          value, message("'{}' and '{}' are the same", as_it_is(twice->name), as_it_is(key.str())));
     out.push_back({std::string(key.str()), std::move(*text), at});
   }
   std::stable_sort(out.begin(), out.end(), [](const Setting& a, const Setting& b) {

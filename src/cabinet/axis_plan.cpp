@@ -230,12 +230,12 @@ class AxisPlanner {
             ? message(
                   "axis {}: {} is {}, the file says {}, and bus {} runs at {}: no bitrate is written; correct "
                   "the file, or the bus (`bus status`)",
-                  as_it_is(axis_->name), profile.rules.nmt.bitrate, stored, said, bus->name,
+                  as_it_is(axis_->name), profile.rules.nmt.bitrate, stored, said, as_it_is(bus->name),
                   drive::bitrate_text(*runs))
             : message(
                   "axis {}: {} is {}, the file says {}, and nothing tells at which bitrate bus {} runs: none is "
                   "written; where it is that of the file, `address --bitrate {} -n {}` sets it",
-                  as_it_is(axis_->name), profile.rules.nmt.bitrate, stored, said, bus->name,
+                  as_it_is(axis_->name), profile.rules.nmt.bitrate, stored, said, as_it_is(bus->name),
                   as_it_is(bus->bitrate), as_it_is(axis_->name)));
     return {};
   }

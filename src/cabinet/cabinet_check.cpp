@@ -170,10 +170,10 @@ class AxisCheck {
           return drive::conversion(number->unit, unit).has_value();
         });
     if (fits) return check_range(name, text, *number);
-    Message known = as_it_is(fmt::to_string(fmt::join(units, ", ")));
+    std::vector<std::string> all(units.begin(), units.end());
+    if (axis_->load && name != "torque") all.push_back(axis_->load->unit + (name == "speed" ? "/s" : ""));
+    auto known = message("{}", NameList{all});
     if (!axis_->load && name != "torque") known += "; `per_turn` makes other units known";
-    if (axis_->load && name != "torque")
-      known += as_it_is(", " + axis_->load->unit + (name == "speed" ? "/s" : ""));
     add(axis_->limits.at,
         make_error(Errc::file, message("limits: {} = \"{}\" is no limit", as_it_is(name), as_it_is(text)),
                    message("a number above 0 in {}", known)));

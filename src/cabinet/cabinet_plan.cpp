@@ -281,7 +281,8 @@ Error something_to_do(const Cabinet& cabinet, std::span<const PlannedAxis> looks
     for (const auto& look : looks)
       if (look.waits_for_restart()) waiting.push_back(look.axis->name);
     const auto names = formatted("{}", fmt::join(waiting, ","));
-    return make_error(Errc::negative, message("{}: values are stored and in force after a restart", names),
+    return make_error(Errc::negative,
+                      message("{}: values are stored and in force after a restart", NameList{waiting}),
                       message("restart the drives; `status -n {}` says how", as_it_is(names)));
   }
   return make_error(

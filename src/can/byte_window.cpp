@@ -61,7 +61,7 @@ Result<Descriptor> open_recording(std::string_view path) {
   struct stat about {};
   int error = out ? 0 : errno;
   if (out && ::fstat(out.get(), &about) == 0 && S_ISDIR(about.st_mode)) error = EISDIR;
-  if (error != 0) return fail(Errc::file, message("cannot open {}: {}", name, system_text(error)));
+  if (error != 0) return fail(Errc::file, message("cannot open {}: {}", as_it_is(name), system_text(error)));
   return out;
 }
 

@@ -56,7 +56,7 @@ Result<ColumnChoice> ColumnChoice::parse(std::string_view text) {
                                      [&](const auto& each) { return equals_nocase(each.name, name); });
     if (found == std::end(kChoices)) return refused(message("'{}' is no column", as_it_is(name)));
     if (!how.empty() && !take_choice(found->role, how, out.columns_.numbers))
-      return refused(message("'{}' is no way to write the column {}", as_it_is(how), name));
+      return refused(message("'{}' is no way to write the column {}", as_it_is(how), as_it_is(name)));
     out.columns_.roles.push_back(found->role);
     named += equals < part.size();
     out.names_.emplace_back(trim(part.substr(std::min(equals + 1, part.size()))));

@@ -61,7 +61,8 @@ std::optional<Frame> frame_of(const Datagram& raw) {
 }
 
 tl::unexpected<Error> busy(std::string_view name, const LocalDirectory& directory) {
-  return fail(Errc::bus, message("local:{} stays busy: a stopped or hanging process holds it", name),
+  return fail(Errc::bus,
+              message("local:{} stays busy: a stopped or hanging process holds it", as_it_is(name)),
               message("`fuser -v {}/lock` lists the processes on this bus; end the culprit",
                       as_it_is(directory.path())));
 }
@@ -182,7 +183,8 @@ Result<std::unique_ptr<Bus>> open_local(std::string_view name, Duration patience
   auto directory = LocalDirectory::open(name);
   if (!directory) return fail(directory.error());
   Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
-  if (!socket) return fail(Errc::bus, message("cannot open local:{}: {}", name, system_text(errno)));
+  if (!socket)
+    return fail(Errc::bus, message("cannot open local:{}: {}", as_it_is(name), system_text(errno)));
   // Room for a queue of one member that does not read, so that the others still get theirs.
   constexpr int kSendBytes = 1 << 20;
   ::setsockopt(socket.get(), SOL_SOCKET, SO_SNDBUF, &kSendBytes, sizeof kSendBytes);

@@ -77,7 +77,8 @@ Result<void> ReplayBus::send(const Frame& frame) {
     skip_done();
     return {};
   }
-  return fail(Errc::bus, message("{} is not in the rest of the recording {}", to_string(frame), name_),
+  return fail(Errc::bus,
+              message("{} is not in the rest of the recording {}", to_string(frame), as_it_is(name_)),
               "a recording answers only its original commands, in order; `decode` shows them");
 }
 

@@ -165,8 +165,9 @@ Result<SerialPort> SerialPort::open(const SerialLine& line) {
 
 tl::unexpected<Error> SerialPort::gone(int error) const {
   if (error == 0 || error == EIO || error == ENXIO || error == ENODEV)
-    return fail(Errc::bus, message("{} is gone", device_), "was the adapter unplugged? plug it in again");
-  return fail(Errc::bus, message("{} failed: {}", device_, system_text(error)),
+    return fail(Errc::bus, message("{} is gone", as_it_is(device_)),
+                "was the adapter unplugged? plug it in again");
+  return fail(Errc::bus, message("{} failed: {}", as_it_is(device_), system_text(error)),
               "was the adapter unplugged? plug it in again");
 }
 
@@ -180,7 +181,7 @@ Result<void> SerialPort::write(std::string_view text, TimePoint limit) {
     if (wrote < 0 && errno == EINTR) continue;
     if (wrote < 0 && errno != EAGAIN) return gone(errno);
     if (steady_now() >= limit)
-      return fail(Errc::bus, message("{} takes nothing any more", device_),
+      return fail(Errc::bus, message("{} takes nothing any more", as_it_is(device_)),
                   "unplug the adapter and plug it in again");
     wait_for(port_.get(), POLLOUT, limit);
   }

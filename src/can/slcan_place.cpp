@@ -24,7 +24,7 @@ std::optional<std::uint32_t> slcan_bitrate(std::string_view text) {
 }
 
 tl::unexpected<Error> no_slcan_place(std::string_view text, const Message& why) {
-  return fail(Errc::usage, message("slcan:{}: {}", text, why),
+  return fail(Errc::usage, message("slcan:{}: {}", as_it_is(text), why),
               message("write slcan:/dev/ttyACM0@500k: the port, and a bitrate of {}; where the port is a "
                       "real serial line, its baud rate behind: slcan:/dev/ttyUSB0@500k,57600",
                       slcan_bitrates_text()));

@@ -172,7 +172,8 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
     if (opened) {
       waits_in_slices_ = wait_in_slices(opened->get(), kSlice);
       if (::dup3(opened->get(), socket_.get(), O_CLOEXEC) < 0)
-        return fail(Errc::bus, message("cannot open {} again: {}", interface_name_, system_text(errno)));
+        return fail(Errc::bus,
+                    message("cannot open {} again: {}", as_it_is(interface_name_), system_text(errno)));
       inbox_.clear();
       failed_.reset();
       is_bus_off_ = false;
@@ -187,10 +188,10 @@ Result<void> SocketCanBus::recover(TimePoint deadline) {
 std::vector<Message> SocketCanBus::take_notices() {
   const auto count = fd_frames_ - std::exchange(told_fd_, fd_frames_);
   if (count == 0) return {};
-  return {count == 1 ? formatted("{}: 1 CAN FD frame came; servoctl reads frames of classical CAN only",
-                                 interface_name_)
-                     : formatted("{}: {} CAN FD frames came; servoctl reads frames of classical CAN only",
-                                 interface_name_, count)};
+  return {count == 1 ? message("{}: 1 CAN FD frame came; servoctl reads frames of classical CAN only",
+                               as_it_is(interface_name_))
+                     : message("{}: {} CAN FD frames came; servoctl reads frames of classical CAN only",
+                               as_it_is(interface_name_), count)};
 }
 
 /// Whoever is slower than the bus finds its frames here: the kernel drops what its queue has no room for.

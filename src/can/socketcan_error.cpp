@@ -17,9 +17,8 @@ bool needs_no_bitrate(std::string_view name) {
 
 Message missing_hint() {
   const auto present = can_interfaces();
-  const auto here = present.empty()
-                        ? Message("this machine has no CAN interface")
-                        : message("CAN interfaces: {}", as_it_is(fmt::to_string(fmt::join(present, ", "))));
+  const auto here = present.empty() ? Message("this machine has no CAN interface")
+                                    : message("CAN interfaces: {}", NameList{present});
   return here +
          "; for a USB adapter: plug it in, then `bus up can0 --bitrate 500k`, with the bitrate of the drives; for a virtual bus: `sudo ip link add dev vcan0 type vcan && sudo ip link "
          "set vcan0 up`";

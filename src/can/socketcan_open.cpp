@@ -81,7 +81,7 @@ Result<Descriptor> socketcan_socket(const std::string& name) {
   Descriptor socket(::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW));
   if (!socket && (errno == EAFNOSUPPORT || errno == EPROTONOSUPPORT))
     return fail(
-        Errc::bus, message("cannot open {}: no SocketCAN in the kernel", name),
+        Errc::bus, message("cannot open {}: no SocketCAN in the kernel", as_it_is(name)),
         "load it with `sudo modprobe can-raw`, or use a bus that needs no kernel CAN: slcan:PORT@500k for an "
         "adapter that is a serial port, local:NAME between processes of this machine, or sim: for simulated "
         "drives");

@@ -92,7 +92,8 @@ Result<void> SocketcandBus::judge() const {
     case DialogueState::raw: return {};
     case DialogueState::refused:
       return fail(
-          Errc::bus, message("{} refuses {}: {}", as_it_is(server), place_.interface_name, dialogue_->why()),
+          Errc::bus,
+          message("{} refuses {}: {}", as_it_is(server), as_it_is(place_.interface_name), dialogue_->why()),
           "it has the interfaces that it was started with (its option -i), and they have to be up there");
     case DialogueState::stranger:
       return fail(
@@ -148,7 +149,7 @@ Result<void> SocketcandBus::await_room(std::size_t size, TimePoint limit) {
   while (!dialogue_->has_room(size)) {
     if (const auto spoken = speak(); !spoken) return spoken;
     if (now() >= limit)
-      return fail(Errc::bus, message("{} takes no frames any more", place_.server()),
+      return fail(Errc::bus, message("{} takes no frames any more", as_it_is(place_.server())),
                   "is its machine or the network between overloaded?");
     if (wait_for(connection_->get(), POLLIN, limit) != Wake::ready) continue;
     if (const auto filled = fill(); !filled) return filled;
@@ -195,7 +196,7 @@ Result<std::optional<Frame>> SocketcandBus::receive(TimePoint deadline) {
     }
     dialogue_->on_time(now());
     if (dialogue_->state() != DialogueState::raw)
-      return lose(make_error(Errc::bus, message("{} does not answer any more", place_.server()),
+      return lose(make_error(Errc::bus, message("{} does not answer any more", as_it_is(place_.server())),
                              "check cable and network, and whether its server hangs"));
     if (const auto spoken = speak(); !spoken) return fail(spoken.error());
     if (now() >= deadline) return std::optional<Frame>();
@@ -216,10 +217,10 @@ Result<void> SocketcandBus::recover(TimePoint deadline) {
 std::vector<Message> SocketcandBus::take_notices() {
   std::vector<Message> out;
   for (const auto& text : std::exchange(complaints_, {}))
-    out.push_back(message("{} reports an error: {}", place_.server(), text));
+    out.push_back(message("{} reports an error: {}", as_it_is(place_.server()), as_it_is(text)));
   if (const auto count = std::exchange(damaged_, 0); count > 0)
-    out.push_back(message("{}: {} element{} left out: no frame of the protocol", place_.server(), count,
-                          ending(count, " was", "s were")));
+    out.push_back(message("{}: {} element{} left out: no frame of the protocol", as_it_is(place_.server()),
+                          count, ending(count, " was", "s were")));
   return out;
 }
 

@@ -104,7 +104,7 @@ Element parse_element(std::string_view text) {
 
 tl::unexpected<Error> no_server_place(std::string_view text, const Message& why) {
   return fail(
-      Errc::usage, message("socketcand:{}: {}", text, why),
+      Errc::usage, message("socketcand:{}: {}", as_it_is(text), why),
       "write socketcand://HOST/can0: the server, perhaps its port (socketcand://HOST:29536/can0), and the "
       "CAN interface that it has there");
 }

@@ -69,7 +69,7 @@ void look_up(Lookup& to, int flags) {
 
 tl::unexpected<Error> host_not_found(const Lookup& lookup) {
   return fail(Errc::bus,
-              message("the host {} is not found: {}", lookup.server.host,
+              message("the host {} is not found: {}", as_it_is(lookup.server.host),
                       lookup.error == EAI_SYSTEM ? system_text(lookup.system_error)
                                                  : std::string(::gai_strerror(lookup.error))),
               "check its name, or write its address");
@@ -88,13 +88,14 @@ Result<Addresses> addresses_of(const TcpServer& server, TimePoint limit, bool en
       (void)::eventfd_write(lookup->done.get(), 1);
     }).detach();
   } catch (...) {
-    return fail(Errc::bus, message("the host {} cannot be looked up", server.host), "write its address");
+    return fail(Errc::bus, message("the host {} cannot be looked up", as_it_is(server.host)),
+                "write its address");
   }
   const auto woken = ends_by_signal ? wait_or_signal(lookup->done.get(), POLLIN, limit)
                                     : await_in_spite_of_signals(lookup->done.get(), limit);
   if (woken == Wake::interrupted) return fail(Errc::interrupted, "interrupted");
   if (woken == Wake::elapsed)
-    return fail(Errc::bus, message("the host {} is not found in time", server.host),
+    return fail(Errc::bus, message("the host {} is not found in time", as_it_is(server.host)),
                 "does the name server answer? `getent hosts NAME` asks it; or write the host's address");
   if (lookup->error != 0) return host_not_found(*lookup);
   return std::move(lookup->list);
@@ -143,11 +144,11 @@ int try_address(const addrinfo& address, Descriptor& out, TimePoint limit, bool 
 tl::unexpected<Error> not_connected(const TcpServer& server, int error) {
   if (error == EINTR) return fail(Errc::interrupted, "interrupted");
   if (error == ECONNREFUSED)
-    return fail(Errc::bus, message("nothing listens at {}", server.name), server.absent);
+    return fail(Errc::bus, message("nothing listens at {}", as_it_is(server.name)), server.absent);
   if (error == ETIMEDOUT)
-    return fail(Errc::bus, message("{} does not answer", server.name),
+    return fail(Errc::bus, message("{} does not answer", as_it_is(server.name)),
                 "is it switched on, in this network, and does a firewall let this port through?");
-  return fail(Errc::bus, message("cannot reach {}: {}", server.name, system_text(error)),
+  return fail(Errc::bus, message("cannot reach {}: {}", as_it_is(server.name), system_text(error)),
               "check the network: `ip route get ADDRESS`");
 }
 
@@ -167,8 +168,10 @@ Result<TcpClient> TcpClient::connect(const TcpServer& server, TimePoint limit, b
 }
 
 tl::unexpected<Error> TcpClient::lost(int error) const {
-  if (error == 0) return fail(Errc::bus, message("{} closed the connection", server_.name), server_.closed);
-  return fail(Errc::bus, message("the connection to {} is lost: {}", server_.name, system_text(error)),
+  if (error == 0)
+    return fail(Errc::bus, message("{} closed the connection", as_it_is(server_.name)), server_.closed);
+  return fail(Errc::bus,
+              message("the connection to {} is lost: {}", as_it_is(server_.name), system_text(error)),
               "check cable and network");
 }
 

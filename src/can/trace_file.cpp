@@ -21,8 +21,8 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 20U;
 /// How long he is waited for at the end, as often as he takes something.
 constexpr Duration kLastPatience = std::chrono::milliseconds(500);
 
-std::string left_out_words(std::size_t frames, std::string_view file) {
-  return formatted("{} frames are missing in the trace {}: it was not read in time", frames, file);
+Message left_out_words(std::size_t frames, std::string_view file) {
+  return message("{} frames are missing in the trace {}: it was not read in time", frames, as_it_is(file));
 }
 
 }  // namespace
@@ -115,7 +115,7 @@ void TraceFile::drop_written(std::size_t bytes) {
 void TraceFile::give_up(int error) {
   file_ = Descriptor();
   if (failed_)
-    failed_(fail(Errc::file, message("cannot write the trace {}: {}", name_, system_text(error)),
+    failed_(fail(Errc::file, message("cannot write the trace {}: {}", as_it_is(name_), system_text(error)),
                  "the trace ends here; the command continues without it")
                 .value());
 }
@@ -130,7 +130,7 @@ void TraceFile::flush_to_slow_reader() {
   }
 }
 
-std::optional<std::string> TraceFile::take_notice() {
+std::optional<Message> TraceFile::take_notice() {
   const auto count = std::exchange(left_out_, 0);
   if (count == 0) return std::nullopt;
   missing_ += count;

@@ -48,7 +48,7 @@ class TraceFile {
   /// kNever while nothing is kept.
   TimePoint flush_due() const;
   /// Records that were left out since the last call, in words.
-  std::optional<std::string> take_notice();
+  std::optional<Message> take_notice();
 
  private:
   void flush_to_slow_reader();

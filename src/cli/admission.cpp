@@ -112,7 +112,7 @@ Result<void> check_registers(const command::Command& command, session::Session& 
                              const drive::Profile* profile, bool chinese) {
   if (session.modbus() == nullptr) return {};
   if (profile != nullptr && !profile->rules.modbus.exists())
-    return fail(Errc::usage, message("of {} no Modbus registers are known", profile->family),
+    return fail(Errc::usage, message("of {} no Modbus registers are known", as_it_is(profile->family)),
                 "use its CAN or EtherCAT port, or describe the registers: docs/drive-data.md, [modbus]");
   if (command.on_registers) return {};
   auto what = message("'{}' does not work over Modbus, which has parameters and readings alone",

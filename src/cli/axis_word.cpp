@@ -20,8 +20,7 @@ Error about_axis(Error error, const std::vector<std::string>& words, const Comma
                  const std::function<Result<const cabinet::Cabinet*>()>& cabinet) {
   const auto after = match.first + match.used;
   if (match.command == nullptr || !includes(match.command->needs, command::Needs::node) ||
-      after >= words.size() || words[after].starts_with("-") ||
-      error.message.text().find("unexpected argument") == std::string::npos)
+      after >= words.size() || words[after].starts_with("-") || !error.message.says("unexpected argument"))
     return error;
   const auto more = axis_hint(words[after], cabinet());
   if (!more.empty()) error.hint = message("{}; {}", more, error.hint);

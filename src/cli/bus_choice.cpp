@@ -61,8 +61,7 @@ Result<Settings> settle_bus(const Cabinet& cabinet, Settings settings, std::vect
               message("{} has no bus {}: {} and {} contradict each other", as_it_is(cabinet.file.string()),
                       as_it_is(settings.bus), name_of(bus_from, "--bus"),
                       name_of(settings.cabinet_from, "--cabinet")),
-              message("its buses: {}; leave one of the two out",
-                      as_it_is(fmt::format("{}", fmt::join(names, ", ")))));
+              message("its buses: {}; leave one of the two out", NameList{names}));
 }
 
 bool are_on_bus(const Cabinet& cabinet, const Settings& settings) {

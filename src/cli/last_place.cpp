@@ -119,7 +119,7 @@ Result<std::vector<LastPlace>> LastPlaceFile::read_all() const {
   if (!text) return fail(text.error());
   const auto document = report::parse_json(*text, path_.string());
   if (!document) return fail(document.error());
-  show::FieldReader fields(*document, path_.string());
+  show::FieldReader fields(*document, as_it_is(path_.string()));
   const auto version = fields.number("servoctl_prompt", true).value_or(kPlaceVersion);
   if (version == kWithoutFolders) return out;
   const auto* places = report::find(*document, "places");
@@ -128,7 +128,7 @@ Result<std::vector<LastPlace>> LastPlaceFile::read_all() const {
   if (list == nullptr) fields.refuse("places");
   auto wrong = fields.error();
   for (std::size_t i = 0; list != nullptr && !wrong && i < std::min(list->size(), kMostPlaces); ++i) {
-    show::FieldReader place((*list)[i], path_.string());
+    show::FieldReader place((*list)[i], as_it_is(path_.string()));
     out.push_back({.folder = place.text("folder", true),
                    .bus = place.text("bus"),
                    .nodes = place.text("nodes"),

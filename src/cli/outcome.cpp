@@ -20,22 +20,26 @@ using report::Show;
 using report::Table;
 using report::Value;
 
-/// A line for people. What is in Chinese already is not looked at again: words that one types look like
-/// English.
-std::string remark(std::string_view lead, std::string_view text, bool told) {
-  if (!told || !has_chinese(text)) return std::string(lead) + printable(text) + "\n";
+/// A line for people, in the language of who reads. What is in Chinese already is not looked at again: words
+/// that one types look like English.
+std::string remark(std::string_view lead, Message what, const Outcome& outcome) {
+  const bool chinese = outcome.settings.shows_chinese();
+  if (chinese && !outcome.told) report::put_into_chinese(what);
+  const auto text = what.text();
+  if (!chinese || !has_chinese(text)) return std::string(lead) + printable(text) + "\n";
   return std::string(report::chinese_word(lead)) + printable(report::chinese_marks(text)) + "\n";
 }
 
 /// Errors as people read them: what happened, then what to do. The same advice for several errors is given
 /// once.
-std::string errors_text(std::span<const Error> errors, bool told) {
+std::string errors_text(const Outcome& outcome) {
+  const auto& errors = outcome.errors;
   std::string out;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     if (i > 0 && errors[i].message == errors[i - 1].message) continue;
-    out += remark("error: ", errors[i].message.text(), told);
+    out += remark("error: ", errors[i].message, outcome);
     const bool again = i + 1 < errors.size() && errors[i + 1].hint == errors[i].hint;
-    if (!errors[i].hint.empty() && !again) out += remark("  hint: ", errors[i].hint.text(), told);
+    if (!errors[i].hint.empty() && !again) out += remark("  hint: ", errors[i].hint, outcome);
   }
   return out;
 }
@@ -133,9 +137,6 @@ Value error_record(const Outcome& outcome) {
 
 Outcome failed(Error error, Settings settings, std::string_view command) {
   Outcome out{.command = std::string(command), .settings = std::move(settings)};
-  out.told = out.settings.shows_chinese();
-  if (out.told)
-    for (auto* part : {&error.message, &error.hint}) report::put_into_chinese(*part);
   out.errors.push_back(std::move(error));
   return out;
 }
@@ -156,8 +157,8 @@ int show(Console& console, const Outcome& outcome) {
 
 void show_remarks(Console& console, const Outcome& outcome) {
   if (!outcome.settings.quiet || outcome.leaves_power)
-    for (const auto& notice : outcome.notices) console.err(remark("notice: ", notice.text(), outcome.told));
-  console.err(errors_text(outcome.errors, outcome.told));
+    for (const auto& notice : outcome.notices) console.err(remark("notice: ", notice, outcome));
+  console.err(errors_text(outcome));
 }
 
 void add_outcome(Outcome& all, Outcome part) {

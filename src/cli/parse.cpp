@@ -155,8 +155,8 @@ class LineParser {
       const bool every = parameter->kind == Kind::flag || parameter->many || parameter->repeats;
       if (every || given.empty() || std::ranges::count(given, given.front()) == std::ssize(given)) continue;
       return fail(Errc::usage,
-                  message("{}: {} is given twice: {} and {}", command_->path, parameter->name, given.front(),
-                          given.back()),
+                  message("{}: {} is given twice: {} and {}", command_->path, parameter->name,
+                          as_it_is(given.front()), as_it_is(given.back())),
                   "leave one of them out");
     }
     return {};

@@ -284,6 +284,7 @@ Result<std::unique_ptr<session::RegisterEnd>> Shell::open_register_end(const Set
 int Shell::report_error(const Error& error, bool json, std::string_view command) {
   Settings settings;
   settings.json = json;
+  settings.chinese = console_->chinese();
   return show(*console_, failed(error, std::move(settings), command));
 }
 

@@ -49,10 +49,10 @@ Result<void> check_wires(const command::Command& command, const std::vector<Line
     for (const auto* axis : part.axes) append(is_can ? rest : left_out, axis->name, ",");
   }
   if (left_out.empty() || rest.empty()) return {};
-  return fail(
-      Errc::usage,
-      message("'{}' needs CAN, and {} is not on CAN: nothing was done", as_it_is(command.path), left_out),
-      "name the others: -n " + rest);
+  return fail(Errc::usage,
+              message("'{}' needs CAN, and {} is not on CAN: nothing was done", as_it_is(command.path),
+                      as_it_is(left_out)),
+              message("name the others: -n {}", as_it_is(rest)));
 }
 
 /// Where nothing but the bus tells rows apart.
@@ -81,9 +81,12 @@ struct Shell::PartRun {
 
   /// Who did not type an option finds it where it was said.
   void name_file(Error& error) const {
-    for (const auto& [option, key] : from_file)
-      if (error.hint.text().find(formatted("{} ", option)) != std::string::npos)
-        error.hint += message("; the cabinet file says it: `{}`", as_it_is(key));
+    for (const auto& [option, key] : from_file) {
+      if (!error.hint.says(formatted("{} ", option))) continue;
+      auto where = message("; the cabinet file says it: `{}`", as_it_is(key));
+      if (run.settings.shows_chinese()) report::put_into_chinese(where);
+      error.hint += where;
+    }
   }
 
   command::Arguments arguments;

@@ -123,7 +123,7 @@ std::optional<KnownDrive> Shell::said_of(Run& run, Session& session, const Ident
   if (change.empty()) return std::move(*known);
   const auto removed = file.remove();
   run.context.notices.push_back(message("node {} is not the drive that was said to be {}: {} is another; {}",
-                                        node_name(identity.node), (*known)->family, change,
+                                        node_name(identity.node), as_it_is((*known)->family), change,
                                         removed ? "that is forgotten" : removed.error().message));
   return std::nullopt;
 }
@@ -139,7 +139,7 @@ Result<std::string> Shell::family_of(Run& run, Session& session, std::uint8_t no
     if (const auto said = said_of(run, session, *identity)) {
       run.context.notices.push_back(
           message("node {} is taken for {}, as said with -d at {} for the drive of this identity",
-                  node_name(node), said->family, said->time));
+                  node_name(node), as_it_is(said->family), said->time));
       found = families_.emplace(key, FoundFamily{said->family, false}).first;
     } else {
       const auto [fits, proven] = suggested(session, *identity, drive::find_families(options_.drive_folders));

@@ -139,8 +139,8 @@ void Shell::remember(Run& run, Session& session, std::uint8_t node) {
 void Shell::offer_turn(Run& run) {
   const auto& errors = run.context.errors;
   auto* session = run.context.session;
-  if (errors.empty() || errors.front().hint.text().find("--turn") == std::string::npos || !run.turn.empty() ||
-      session == nullptr || options_.state_folder.empty() || run.context.nodes.size() != 1)
+  if (errors.empty() || !errors.front().hint.says("--turn ") || !run.turn.empty() || session == nullptr ||
+      options_.state_folder.empty() || run.context.nodes.size() != 1)
     return;
   const auto node = run.context.nodes.front();
   const auto known = KnownDriveFile(options_.state_folder, session->url(), node).read();

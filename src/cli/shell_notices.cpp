@@ -45,7 +45,8 @@ std::vector<Message> Shell::take_notices(const drive::Profile* profile, bool chi
     // The family of the line says nothing of another bus.
     const auto* family = session == bus_.session() ? profile : nullptr;
     for (const auto& event : session->take_events()) {
-      Message text = names.in(show::notice_text(event, family, chinese, &session->network()));
+      auto text = show::notice_text(event, family, chinese, &session->network());
+      names.put_into(text);
       // Whoever looks anew at a node sees the same two again; other events may well come twice.
       const bool doubled = std::holds_alternative<session::NodeEvent::Doubled>(event.what);
       if (!doubled || std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));

@@ -59,7 +59,7 @@ Result<void> check_several(const command::Command& command, const command::Argum
       Errc::usage,
       message("'{}' is for axes of one bus and one family at a time; these are of {} buses or families",
               as_it_is(command.path), parts.size()),
-      first.empty()     ? "name the bus: --bus " + parts.front().settings.bus
+      first.empty()     ? message("name the bus: --bus {}", as_it_is(parts.front().settings.bus))
       : command.goes_on ? message("it listens to one bus as it comes in: such as -n {}, and the "
                                   "others in another terminal",
                                   as_it_is(first))

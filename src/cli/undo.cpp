@@ -34,7 +34,7 @@ Result<void> check_value(session::Session& session, std::uint64_t opening, const
   // Where an undo was cut off behind its write it holds that already.
   if (*now != value.after && *now != value.before)
     return refused(message("no longer holds in {} ({}) what was written: somebody has changed it since",
-                           value.name, to_string(value.object)));
+                           as_it_is(value.name), to_string(value.object)));
   return {};
 }
 

@@ -37,8 +37,8 @@ void tell_moved_axis(Context& context, std::uint8_t node, std::uint8_t to,
   const auto* axis = cabinet ? axis_on_line(context, **cabinet, node) : nullptr;
   if (axis == nullptr || (axis->serial && serial && *axis->serial != *serial)) return;
   context.notices.push_back(
-      message("the cabinet file still has axis {} at node-ID {}: write the new one, {}, into it", axis->name,
-              axis->node, to));
+      message("the cabinet file still has axis {} at node-ID {}: write the new one, {}, into it",
+              as_it_is(axis->name), axis->node, to));
 }
 
 }  // namespace servoctl::command

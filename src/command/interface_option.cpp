@@ -11,7 +11,7 @@ Result<std::string> interface_argument(const Arguments& arguments) {
   auto name = session::canonical_url(arguments.text("interface"));
   if (name.find(':') != std::string::npos)
     return fail(
-        Errc::usage, message("{} is no CAN interface of the kernel", name),
+        Errc::usage, message("{} is no CAN interface of the kernel", as_it_is(name)),
         name.starts_with("slcan:")
             ? "the bitrate of such an adapter stands behind the @ and is set when it is opened: `scan -b "
               "slcan:PORT@500k`"
@@ -24,7 +24,7 @@ Result<std::optional<std::uint32_t>> number_option(const Arguments& arguments, s
   if (!arguments.has(name)) return std::optional<std::uint32_t>();
   const auto number = parse_digits(arguments.text(name), 10);
   if (!number || *number < least || *number > most)
-    return fail(Errc::usage, message("{}: '{}' is not a number from {} to {}", name,
+    return fail(Errc::usage, message("{}: '{}' is not a number from {} to {}", as_it_is(name),
                                      as_it_is(arguments.text(name)), least, most));
   return std::optional(static_cast<std::uint32_t>(*number));
 }
@@ -36,7 +36,7 @@ Result<void> hold_energised(const Context& context, const std::string& name) {
   return fail(
       Errc::refused,
       message("{} stays as it is: node {} was left energised over it, and could not be stopped any more",
-              name, node_name(nodes.front())),
+              as_it_is(name), node_name(nodes.front())),
       message("`disable -n {}` first", node_name(nodes.front())));
 }
 

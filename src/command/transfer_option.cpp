@@ -35,9 +35,10 @@ Result<Transfer> write_transfer(const Context& context, const Arguments& argumen
                 "it takes 1 to 4 bytes; leave --transfer out");
   if (given != Transfer::automatic || size <= 4) return given;
   if (context.profile != nullptr && !context.profile->rules.sdo.segmented)
-    return fail(Errc::usage,
-                message("{} accepts at most 4 bytes per write, not {}", context.profile->family, size),
-                "--transfer segmented or block tries it anyway");
+    return fail(
+        Errc::usage,
+        message("{} accepts at most 4 bytes per write, not {}", as_it_is(context.profile->family), size),
+        "--transfer segmented or block tries it anyway");
   return knows_block(context) ? Transfer::automatic : Transfer::segmented;
 }
 

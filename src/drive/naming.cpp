@@ -35,7 +35,7 @@ tl::unexpected<Error> ambiguous(std::string_view text, const std::vector<std::st
       meanings.begin(),
       meanings.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(meanings.size(), 6)));
   return fail(Errc::usage, message("'{}' is ambiguous: {} meanings", as_it_is(text), meanings.size()),
-              shown.size() < meanings.size() ? message("write {}, …", Words{shown})
+              shown.size() < meanings.size() ? message("write {}, …", NameList{shown})
                                              : message("write {}", one_of(shown)));
 }
 

@@ -50,7 +50,7 @@ class Facts {
 Message those_there_are() {
   const auto names = ethernet_interfaces();
   if (names.empty()) return "this machine has no Ethernet interface";
-  return message("Ethernet interfaces: {}", as_it_is(fmt::to_string(fmt::join(names, ", "))));
+  return message("Ethernet interfaces: {}", NameList{names});
 }
 
 tl::unexpected<Error> missing(const std::string& name) {

@@ -49,7 +49,7 @@ Result<Descriptor> packet_socket(const std::string& name, int index) {
   Descriptor socket(::socket(AF_PACKET, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!socket && (errno == EPERM || errno == EACCES)) return no_right(name);
   if (!socket && errno == EAFNOSUPPORT)
-    return fail(Errc::bus, message("cannot open {}: no packet sockets in the kernel", name),
+    return fail(Errc::bus, message("cannot open {}: no packet sockets in the kernel", as_it_is(name)),
                 "load them with `sudo modprobe af_packet`");
   if (!socket) return interface_cannot_open(name, errno);
   configure(socket.get());

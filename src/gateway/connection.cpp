@@ -17,8 +17,9 @@ constexpr std::string_view kStartOne =
 
 tl::unexpected<Error> lost(const std::string& place, int error) {
   return fail(Errc::bus,
-              error == 0 ? message("{} closed the connection", place)
-                         : message("the connection to {} is lost: {}", place, can::system_text(error)),
+              error == 0
+                  ? message("{} closed the connection", as_it_is(place))
+                  : message("the connection to {} is lost: {}", as_it_is(place), can::system_text(error)),
               "did the gateway end? Its own log says");
 }
 
@@ -32,8 +33,8 @@ Result<Connection> Connection::open_path(const Address& address) {
   std::memcpy(at.sun_path, address.path.c_str(), address.path.size() + 1);  // parse_url() sees to its length.
   if (::connect(out.get(), reinterpret_cast<const sockaddr*>(&at), sizeof at) == 0) return out;
   if (errno == ECONNREFUSED || errno == ENOENT)
-    return fail(Errc::bus, message("nothing listens at {}", address.path), std::string(kStartOne));
-  return fail(Errc::bus, message("cannot reach {}: {}", address.path, can::system_text(errno)));
+    return fail(Errc::bus, message("nothing listens at {}", as_it_is(address.path)), std::string(kStartOne));
+  return fail(Errc::bus, message("cannot reach {}: {}", as_it_is(address.path), can::system_text(errno)));
 }
 
 Result<Connection> Connection::open(const Address& address, TimePoint limit, bool ends_by_signal) {

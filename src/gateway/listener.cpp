@@ -72,7 +72,7 @@ Result<std::unique_ptr<Listener>> listen_at_port(const Address& address) {
   if (const int code =
           ::getaddrinfo(address.host.c_str(), std::to_string(address.port).c_str(), &hints, &found);
       code != 0)
-    return fail(Errc::bus, message("{} is not found: {}", address.host, ::gai_strerror(code)),
+    return fail(Errc::bus, message("{} is not found: {}", as_it_is(address.host), ::gai_strerror(code)),
                 "name an address of this machine: 127.0.0.1:60000");
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owned(found, &::freeaddrinfo);
   Descriptor socket(::socket(found->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));

@@ -44,7 +44,7 @@ tl::unexpected<Error> damaged(Message message) {
 }
 
 Result<KeptTurn> parse(const Value& document, const std::string& file, std::uint8_t node) {
-  show::FieldReader fields(document, file);
+  show::FieldReader fields(document, as_it_is(file));
   KeptTurn out;
   if (fields.number("servoctl_turn", true).value_or(kVersion) != kVersion) fields.refuse("servoctl_turn");
   if (fields.number("node", true).value_or(node) != node) fields.refuse("node");

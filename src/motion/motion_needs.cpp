@@ -97,7 +97,7 @@ Result<std::int8_t> mode_by_data(const drive::Profile& profile, const MotionNeed
                                  ToldBy told_by) {
   const auto mode = profile.rules.motion.*(need.mode);
   if (!mode)
-    return fail(Errc::refused, message(fmt::runtime(need.no_mode), profile.family),
+    return fail(Errc::refused, message(fmt::runtime(need.no_mode), as_it_is(profile.family)),
                 possible_motions(profile, modes));
   if (const auto object = missing(profile, need))
     return fail(lacks_object(profile, need, *object, modes, told_by));

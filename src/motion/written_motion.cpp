@@ -14,7 +14,7 @@ Result<void> check_one(const MotionUnits& units, const WrittenQuantity& written)
       written.object == objects::kTorqueActual && units.profile().rules.motion.torque.has_value();
   if (written.is_limit && !also_a_ceiling && !units.has(written.object))
     return fail(Errc::usage,
-                message("{} {}: this family does not report it ({})", written.word, written.text,
+                message("{} {}: this family does not report it ({})", written.word, as_it_is(written.text),
                         to_string(written.object)),
                 "leave this limit out");
   if (!units.has(written.object)) return {};

@@ -33,15 +33,15 @@ std::string range_of(DataType type) {
 
 tl::unexpected<Error> does_not_fit(DataType type, std::string_view text) {
   if (is_integer(type))
-    return fail(Errc::usage, message("{} does not fit {} ({})", text, name(type), range_of(type)));
-  return fail(Errc::usage, message("'{}' does not fit {}", as_it_is(text), name(type)));
+    return fail(Errc::usage, message("{} does not fit {} ({})", text, as_it_is(name(type)), range_of(type)));
+  return fail(Errc::usage, message("'{}' does not fit {}", as_it_is(text), as_it_is(name(type))));
 }
 
 tl::unexpected<Error> not_a_value(DataType type, std::string_view text) {
   if (is_integer(type))
     return fail(Errc::usage, message("'{}' is not a number", as_it_is(text)),
                 message("write an integer ({}): 100, 0x64 or 64h", range_of(type)));
-  return fail(Errc::usage, message("'{}' is no {}", as_it_is(text), name(type)));
+  return fail(Errc::usage, message("'{}' is no {}", as_it_is(text), as_it_is(name(type))));
 }
 
 bool is_hexadecimal(std::string_view text) {
@@ -81,7 +81,7 @@ Result<Value> parse_bytes_value(DataType type, std::string_view text) {
   auto digits = starts_with_nocase(text, "hex:") ? text.substr(4) : text;
   auto bytes = parse_hex_bytes(digits);
   if (!bytes)
-    return fail(Errc::usage, message("'{}' is no {}", as_it_is(text), name(type)),
+    return fail(Errc::usage, message("'{}' is no {}", as_it_is(text), as_it_is(name(type))),
                 "write bytes as hex:00 64 FF");
   return Value(std::move(*bytes));
 }
@@ -130,7 +130,7 @@ Result<Bytes> encode(DataType type, const Value& value) {
     const auto size = size_of(type);
     if (size && bytes->size() != *size)
       return fail(Errc::usage,
-                  message("{} bytes do not fit {} ({} bytes)", bytes->size(), name(type), *size));
+                  message("{} bytes do not fit {} ({} bytes)", bytes->size(), as_it_is(name(type)), *size));
     return *bytes;
   }
   return does_not_fit(type, to_string(value));
@@ -139,7 +139,8 @@ Result<Bytes> encode(DataType type, const Value& value) {
 Result<Value> decode(DataType type, ByteSpan bytes) {
   const auto size = size_of(type);
   if (size && bytes.size() != *size)
-    return fail(Errc::protocol, message("{} bytes received, {} has {}", bytes.size(), name(type), *size),
+    return fail(Errc::protocol,
+                message("{} bytes received, {} has {}", bytes.size(), as_it_is(name(type)), *size),
                 "the dictionary in use may belong to another drive or firmware");
   if (is_signed(type)) return Value(sign_extended(load_le(bytes), bits_of(type)));
   if (is_unsigned(type)) return Value(load_le(bytes));

@@ -20,12 +20,12 @@ constexpr std::string_view kKeys[] = {"pdo",  "map",        "cob_id",   "valid",
                                       "type", "inhibit_us", "event_ms", "sync_start"};
 
 /// Reads one element of the list; a key that is misspelt would silently not hold.
-std::optional<std::string> read_recipe(const Value& record, const std::string& where, PdoRecipe& out) {
+std::optional<Message> read_recipe(const Value& record, const Message& where, PdoRecipe& out) {
   const auto* fields = std::get_if<report::Record>(&record.data());
-  if (fields == nullptr) return where + " is not an object";
+  if (fields == nullptr) return message("{} is not an object", where);
   for (const auto& field : *fields)
     if (std::find(std::begin(kKeys), std::end(kKeys), field.key) == std::end(kKeys))
-      return formatted("{}: unknown key '{}'", where, field.key);
+      return message("{}: unknown key '{}'", where, as_it_is(field.key));
   show::FieldReader reader(record, where);
   out.pdo = reader.text("pdo", true);
   out.cob_id = reader.text("cob_id");
@@ -60,7 +60,7 @@ std::optional<std::string> read_recipe(const Value& record, const std::string& w
 Result<PdoFile> read_json(std::string_view text, const std::string& file) {
   const auto root = report::parse_json(text, file);
   if (!root) return fail(root.error());
-  show::FieldReader reader(*root, file);
+  show::FieldReader reader(*root, as_it_is(file));
   PdoFile out;
   out.family = reader.text("family");
   if (reader.number("format", true).value_or(0) != 1) reader.refuse("format");
@@ -69,7 +69,7 @@ Result<PdoFile> read_json(std::string_view text, const std::string& file) {
   if (list == nullptr) reader.refuse("pdo");
   auto error = reader.error();
   for (std::size_t i = 0; list != nullptr && i < list->size() && !error; ++i)
-    error = read_recipe((*list)[i], formatted("{}: pdo {}", file, i + 1), out.pdos.emplace_back());
+    error = read_recipe((*list)[i], message("{}: pdo {}", as_it_is(file), i + 1), out.pdos.emplace_back());
   if (error) return fail(Errc::file, *error, "`pdo save` writes such a file");
   return out;
 }

@@ -115,18 +115,19 @@ void PdoRecord::settle() {
   mine_ = false;
 }
 
-std::string PdoRecord::notice_of(const fs::path& record, const std::optional<Identity>& drive) const {
+Message PdoRecord::notice_of(const fs::path& record, const std::optional<Identity>& drive) const {
   const auto backup = settings::read_backup(record);
-  const auto since = backup ? ", begun at " + backup->time + "," : std::string();
+  const auto since = backup ? message(", begun at {},", as_it_is(backup->time)) : Message();
   if (backup && drive && is_other_drive(backup->identity, *drive))
-    return formatted(
+    return message(
         "node {}: a PDO change of another drive that was node {} here ({}){} was interrupted; {} holds that "
         "drive's old PDOs (delete the file if not needed)",
-        node_, node_, text_of(backup->identity), since, record.string());
-  return formatted(
+        node_name(node_), node_, text_of(backup->identity), since, as_it_is(record.string()));
+  return message(
       "node {}: a change of its PDOs{} was interrupted; `pdo apply {} -n {}{}` restores the old ones (delete "
       "the file if not needed)",
-      node_, since, record.string(), node_, backup ? " -d " + backup->family : "");
+      node_name(node_), since, as_it_is(record.string()), node_name(node_),
+      backup ? message(" -d {}", as_it_is(backup->family)) : Message());
 }
 
 std::vector<Message> PdoRecord::notices() const {

@@ -37,8 +37,7 @@ class PdoRecord {
 
  private:
   std::vector<std::filesystem::path> found() const;
-  std::string notice_of(const std::filesystem::path& record,
-                        const std::optional<session::Identity>& drive) const;
+  Message notice_of(const std::filesystem::path& record, const std::optional<session::Identity>& drive) const;
 
   const show::Desk* desk_;
   std::uint8_t node_;

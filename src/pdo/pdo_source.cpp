@@ -131,10 +131,10 @@ Result<drive::PdoFile> read_pdo_source(const drive::Profile& profile, const std:
   if (!out) return out;
   if (out->pdos.empty()) return fail(Errc::negative, message("{} contains no PDOs", as_it_is(file.string())));
   if (!out->family.empty() && !equals_nocase(out->family, profile.family))
-    return fail(
-        Errc::refused,
-        message("{} is for {}, not for {}", as_it_is(file.string()), out->family, as_it_is(profile.family)),
-        "edit a copy: remove the family, or set this one");
+    return fail(Errc::refused,
+                message("{} is for {}, not for {}", as_it_is(file.string()), as_it_is(out->family),
+                        as_it_is(profile.family)),
+                "edit a copy: remove the family, or set this one");
   return out;
 }
 

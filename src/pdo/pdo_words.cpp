@@ -53,7 +53,7 @@ Result<PdoEntry> parse_mapped(const drive::Profile& profile, std::string_view te
         message("{} is not in the dictionary of {}", to_string(target->address), as_it_is(profile.family)),
         message("`objects -d {}` lists what can be mapped", as_it_is(profile.family)));
   if (!bits || *bits == 0)
-    return fail(Errc::usage, message("the length of {} is not known", text),
+    return fail(Errc::usage, message("the length of {} is not known", as_it_is(text)),
                 message("give its bits: {}/16", to_string(target->address)));
   return PdoEntry{target->address, *bits};
 }

@@ -30,8 +30,8 @@ bool is_spare(const Pdo& pdo, const session::Values& values) {
 
 }  // namespace
 
-std::string reason_naming(std::uint8_t node, const Error& error) {
-  return error.node ? error.message.text() : formatted("node {}: {}", node, error.message.text());
+Message reason_naming(std::uint8_t node, const Error& error) {
+  return error.node ? error.message : message("node {}: {}", node_name(node), error.message);
 }
 
 Result<Pdo> ScopeMapping::choose(std::span<const std::string> objects, Duration period,

@@ -12,7 +12,7 @@
 namespace servoctl::pdo {
 
 /// What went wrong, and of which node it is said, once: many errors name it themselves.
-std::string reason_naming(std::uint8_t node, const Error& error);
+Message reason_naming(std::uint8_t node, const Error& error);
 
 /// Puts objects of one node into a TPDO that is not in use, for as long as it lives.
 class ScopeMapping {

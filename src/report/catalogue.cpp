@@ -155,7 +155,7 @@ void put_into_chinese(Message& message, const Names* names) {
   };
   message = message.changed(word, [names](Message::Argument& argument) {
     if (auto* text = std::get_if<std::string>(&argument)) *text = in_chinese(std::string_view(*text), names);
-    if (const auto* words = std::get_if<Words>(&argument)) argument = Verbatim{words->text("、")};
+    if (const auto* words = std::get_if<NameList>(&argument)) argument = Verbatim{words->text("、")};
   });
 }
 

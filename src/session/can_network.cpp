@@ -142,7 +142,7 @@ Result<void> CanNetwork::on_report(can::ControllerReport report) {
     last_report_.reset();
     const auto name = canonical_url(url_);
     return fail(
-        Errc::bus, url_ + ": " + std::string(can::text(report)),
+        Errc::bus, message("{}: {}", as_it_is(url_), can::text(report)),
         name.find(':') == std::string::npos
             ? message("check bitrate, wiring and termination; then `bus up {}` takes it down and up again "
                       "(with `--restart-ms 100` it comes back by itself)",
@@ -156,7 +156,8 @@ Result<void> CanNetwork::on_report(can::ControllerReport report) {
 
 std::vector<Message> CanNetwork::take_notices() {
   std::vector<Message> out;
-  for (const auto report : take_reports()) out.push_back(url_ + ": " + std::string(can::text(report)));
+  for (const auto report : take_reports())
+    out.push_back(message("{}: {}", as_it_is(url_), can::text(report)));
   for (auto& notice : bus_->take_notices()) out.push_back(std::move(notice));
   for (auto& notice : std::exchange(habit_notices_, {})) out.push_back(std::move(notice));
   return out;

@@ -226,7 +226,7 @@ Result<void> GatewayNetwork::command(std::uint8_t node, canopen::NmtCommand comm
   }
   return fail(Errc::refused,
               message("the gateway answers '{}' to '{}': {} {}", as_it_is(answer->number), as_it_is(line),
-                      gateway::code_text(answer->number), printable(answer->text)),
+                      gateway::code_text(answer->number), as_it_is(printable(answer->text))),
               "one of servoctl only reads unless it was started with --allow write");
 }
 

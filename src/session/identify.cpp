@@ -215,7 +215,7 @@ Result<void> refuse_duplicate(Session& session, std::uint8_t node) {
       message(
           "disconnect one and give it another node-ID, then `scan` (drives with LSS take one by their serial numbers: "
           "`help lss set-node`); `disable -n {}` and `nmt stop -n {}` reach both",
-          node, node)));
+          node_name(node), node_name(node))));
 }
 
 }  // namespace servoctl::session

@@ -103,10 +103,10 @@ Error ModbusObjectChannel::silence(const Outcome& outcome) const {
     out.message += lateness_text(*outcome.late);
     out.hint = lateness_hint(*outcome.late);
   } else if (outcome.other_unit) {
-    out.message += formatted("; unit {} answered instead", *outcome.other_unit);
+    out.message += message("; unit {} answered instead", *outcome.other_unit);
     out.hint = "do two units, or two masters, talk on this line?";
   } else if (outcome.damaged > 0) {
-    out.message += formatted("; {} bytes came that are no message", outcome.damaged);
+    out.message += message("; {} bytes came that are no message", outcome.damaged);
     out.hint = message(
         "has the drive another speed, parity or form of frames than {}? Two units of one address, and noise "
         "on the cable, look the same",

@@ -28,7 +28,7 @@ tl::unexpected<Error> no_parameter(const show::Desk& desk) {
     return fail(Errc::usage, "a drive on EtherCAT has no node-ID: it is addressed by its place on the ring",
                 "the number after -n changes with the order of the cables");
   return fail(Errc::usage,
-              message("no parameter of a {} is known that sets its node-ID", desk.profile->family),
+              message("no parameter of a {} is known that sets its node-ID", as_it_is(desk.profile->family)),
               "look into its manual: switches, its panel, or the vendor's software; where it is an object, "
               "`address NEW --object INDEX:SUB`");
 }
@@ -189,8 +189,8 @@ Result<void> refuse_taken(show::Desk& desk, std::span<const std::uint8_t> nodes,
 
 void tell_unguarded(show::Desk& desk) {
   if (desk.dry_run || session::guards_nodes(*desk.session)) return;
-  auto text = formatted("{} carries no remote frames: nodes that are stopped (NMT) were not looked for",
-                        desk.session->url());
+  auto text = message("{} carries no remote frames: nodes that are stopped (NMT) were not looked for",
+                      as_it_is(desk.session->url()));
   if (std::ranges::find(desk.notices, text) == desk.notices.end()) desk.notices.push_back(std::move(text));
 }
 

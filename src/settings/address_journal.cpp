@@ -88,7 +88,7 @@ Result<std::optional<AddressJournal>> read_address_journal(const std::filesystem
   if (!text) return fail(text.error());
   const auto document = report::parse_json(*text, path.string());
   if (!document) return no_address_journal(document.error().message);
-  show::FieldReader fields(*document, path.string());
+  show::FieldReader fields(*document, as_it_is(path.string()));
   if (fields.number("servoctl_address_plan", true).value_or(0) != kAddressJournalVersion)
     fields.refuse("servoctl_address_plan");
   AddressJournal out;
@@ -105,8 +105,8 @@ Result<std::optional<AddressJournal>> read_address_journal(const std::filesystem
   const auto seal = fields.text("seal", true);
   if (fields.error()) return no_address_journal(*fields.error());
   if (seal != checksum_of(report::to_json(address_body(out))))
-    return no_address_journal(path.string() +
-                              ": its seal does not match: the file was changed after it was written");
+    return no_address_journal(message(
+        "{}: its seal does not match: the file was changed after it was written", as_it_is(path.string())));
   return std::optional(std::move(out));
 }
 

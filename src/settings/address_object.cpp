@@ -10,9 +10,10 @@ Result<drive::Profile> with_address_object(const drive::Profile& profile, std::s
   if (!target) return fail(target.error());
   const auto& stated = profile.rules.nmt.node_id;
   if (!stated.empty() && drive::place_of(profile, stated) != target->address)
-    return fail(Errc::refused,
-                message("--object {}: {} has its node-ID in {}", object, as_it_is(profile.family), stated),
-                "leave --object out");
+    return fail(
+        Errc::refused,
+        message("--object {}: {} has its node-ID in {}", as_it_is(object), as_it_is(profile.family), stated),
+        "leave --object out");
   auto out = profile;
   if (stated.empty()) out.rules.nmt.node_id = to_string(target->address);
   return out;

@@ -199,7 +199,7 @@ class AddressRun {
     desk_->notices.push_back(
         message("node {}: COB-IDs that did not follow, and still are those of node {}: {}; where that is not "
                 "meant, `pdo show -n {} -d {}` shows them, and `write` puts them right",
-                node_name(change_->to), change_->node, fmt::join(each, ", "), node_name(change_->to),
+                node_name(change_->to), change_->node, NameList{each}, node_name(change_->to),
                 as_it_is(change_->profile->family)));
   }
 

@@ -140,8 +140,10 @@ Result<void> judge_unusable(show::Desk& desk, const Backup& backup, bool skip_in
   }
   errors.insert(errors.end(), backup.unusable.begin() + 1, backup.unusable.end());
   auto error = backup.unusable.front();
-  error.hint += message("{}--skip-invalid leaves {} out", error.hint.empty() ? "" : "; ",
-                        backup.unusable.size() == 1 ? "it" : message("these {}", backup.unusable.size()));
+  const Message joint = error.hint.empty() ? Message() : Message("; ");
+  error.hint += backup.unusable.size() == 1
+                    ? message("{}--skip-invalid leaves it out", joint)
+                    : message("{}--skip-invalid leaves these {} out", joint, backup.unusable.size());
   return fail(std::move(error));
 }
 

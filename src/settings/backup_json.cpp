@@ -45,7 +45,7 @@ session::Identity read_identity(const Value& record, std::uint8_t node, show::Fi
 }
 
 Result<Backup::Entry> read_entry(const Value& record, std::uint32_t line, std::string_view file) {
-  const auto where = formatted("{}:{}", file, line);
+  const auto where = message("{}:{}", as_it_is(file), line);
   show::FieldReader fields(record, where);
   Backup::Entry out;
   out.line = line;
@@ -129,7 +129,7 @@ std::string json_text(const drive::Profile* profile, const Backup& backup) {
 Result<Backup> read_json_backup(std::string_view text, const std::string& file) {
   const auto document = report::parse_json(text, file);
   if (!document) return fail(document.error());
-  show::FieldReader fields(*document, file);
+  show::FieldReader fields(*document, as_it_is(file));
   const auto version = fields.number("servoctl_backup", true);
   if (!version) return fail(Errc::file, message("{}: this is not a servoctl backup", as_it_is(file)));
   if (*version > static_cast<std::uint64_t>(kBackupVersion))

@@ -71,10 +71,9 @@ void warn_of_gear(show::Desk& desk, std::uint8_t node, drive::Measure measure) {
         ids.insert(target.parameter->id);
     }
   if (ids.empty()) return;
-  const auto names = fmt::to_string(fmt::join(ids, ", "));
   const auto notice = message(
       "node {}: the unit is converted by {}, valid only if the drive was restarted after they changed",
-      node_name(node), as_it_is(names));
+      node_name(node), NameList{{ids.begin(), ids.end()}});
   if (std::find(desk.notices.begin(), desk.notices.end(), notice) == desk.notices.end())
     desk.notices.push_back(notice);
 }

@@ -71,7 +71,7 @@ Message title_in_message(std::string_view title) {
 }
 
 Message title_in_message(const Side& side) {
-  if (side.title == formatted("node {}", side.node)) return message("node {}", node_name(side.node));
+  if (side.is_drive) return message("node {}", node_name(side.node));
   return title_in_message(std::string_view(side.title));
 }
 

@@ -15,6 +15,7 @@ struct Side {
   std::string title;
   std::uint8_t node = 1;
   std::map<ObjectAddress, Bytes> values;
+  bool is_drive = false;                    ///< The title is that of its node.
   const drive::Profile* profile = nullptr;  ///< What describes it, where that is not what describes both.
 };
 

@@ -112,7 +112,8 @@ Result<Change> producer_change(show::Desk& desk, std::uint8_t node, Duration tim
   const auto object = objects::kProducerHeartbeat;
   const bool is_known = desk.profile != nullptr;
   if (is_known && desk.profile->dictionary.find(object) == nullptr)
-    return fail(Errc::usage, message("a {} has no 1017h: it sends no heartbeat", desk.profile->family),
+    return fail(Errc::usage,
+                message("a {} has no 1017h: it sends no heartbeat", as_it_is(desk.profile->family)),
                 "node guarding asks it instead: `nmt watch --guard 200ms`");
   const auto count = std::chrono::duration_cast<std::chrono::milliseconds>(time).count();
   // Without a family the object is as CiA 301 has it.
@@ -127,9 +128,10 @@ Result<std::vector<Change>> consumer_changes(show::Desk& desk, std::uint8_t node
   const auto now = session::read_supervision(*desk.session, *desk.profile, nodes).front();
   if (!now) return fail(now.error());
   if (now->entries.empty())
-    return fail(drive_error(Errc::usage, node, {objects::kConsumerHeartbeatIndex, 0},
-                            message("a {} watches no heartbeat: it has no 1016h", desk.profile->family),
-                            "`watchdog` shows what it does without its master"));
+    return fail(
+        drive_error(Errc::usage, node, {objects::kConsumerHeartbeatIndex, 0},
+                    message("a {} watches no heartbeat: it has no 1016h", as_it_is(desk.profile->family)),
+                    "`watchdog` shows what it does without its master"));
   auto entries = now->entries;
   std::vector<Change> out;
   for (const auto& watch : watches) {

@@ -71,7 +71,7 @@ Result<void> RestoreTarget::check_each(bool copies) {
       if (error.code == Errc::negative) error.hint += "; --skip-invalid restores the rest";
       return fail(std::move(error));
     }
-    error.message += "; node " + formatted("{} keeps {}", node_, to_hex(present_.at(object)));
+    error.message += message("; node {} keeps {}", node_name(node_), to_hex(present_.at(object)));
     error.hint = skipped ? "" : "the drive may not accept its own original value again: `write` it if needed";
     left_.push_back(std::move(error));
     ++left_count_;

@@ -65,7 +65,7 @@ void refuse_other_keys(const Value& document, show::FieldReader& fields) {
 }
 
 Result<RestoreJournal> parse_journal(const Value& document, const std::string& file) {
-  show::FieldReader fields(document, file);
+  show::FieldReader fields(document, as_it_is(file));
   if (const auto version = fields.number("servoctl_journal", true); version && *version != kJournalVersion)
     return no_journal(message("{}: its version {} is not that of this program ({})", as_it_is(file), *version,
                               kJournalVersion));

@@ -22,8 +22,8 @@ std::string shown(const drive::Profile& profile, std::uint8_t node, ObjectAddres
 }
 
 /// What the drive's own start makes another value of.
-void add_replaced(const drive::Profile& profile, std::uint8_t node, const std::string& title,
-                  const session::Values& wanted, std::vector<std::string>& out) {
+void add_replaced(const drive::Profile& profile, std::uint8_t node, const Message& title,
+                  const session::Values& wanted, std::vector<Message>& out) {
   auto all = wanted;
   session::add_stored_copies(profile, node, all);
   for (const auto& [place, copy] : all) {
@@ -32,34 +32,34 @@ void add_replaced(const drive::Profile& profile, std::uint8_t node, const std::s
     if ((own != wanted.end() && own->second == copy) || parameter == nullptr || !parameter->mirror) continue;
     const auto object = *parameter->mirror;
     const auto says = own == wanted.end()
-                          ? std::string("which is not written")
-                          : formatted("which {} says is {}", title, shown(profile, node, place, own->second));
-    out.push_back(formatted("node {}: {} is {} only until a restart: the drive then takes it from {}, {}",
-                            node, to_string(object), shown(profile, node, object, wanted.at(object)),
-                            parameter->id, says));
+                          ? Message("which is not written")
+                          : message("which {} says is {}", title, shown(profile, node, place, own->second));
+    out.push_back(message("node {}: {} is {} only until a restart: the drive then takes it from {}, {}",
+                          node_name(node), to_string(object), shown(profile, node, object, wanted.at(object)),
+                          as_it_is(parameter->id), says));
   }
 }
 
 }  // namespace
 
-std::vector<std::string> doubts_of_keeping(const drive::Profile& profile, std::uint8_t node,
-                                           const std::string& title, const session::Values& present,
-                                           const session::Values& wanted) {
-  std::vector<std::string> out;
+std::vector<Message> doubts_of_keeping(const drive::Profile& profile, std::uint8_t node, const Message& title,
+                                       const session::Values& present, const session::Values& wanted) {
+  std::vector<Message> out;
   if (!session::can_store(profile)) return out;
-  std::string names;
+  NameList ids;
   std::size_t unknown = 0;
   for (const auto& [object, data] : wanted) {
     const auto now = present.find(object);
     const bool is_written = now == present.end() || now->second != data;
     if (!is_written || session::is_known_to_keep(profile, object)) continue;
-    if (unknown++ < kMostNames) append(names, to_string(object));
+    if (unknown++ < kMostNames) ids.words.push_back(to_string(object));
   }
-  if (unknown > kMostNames) append(names, formatted("and {} more", unknown - kMostNames));
+  auto names = message("{}", ids);
+  if (unknown > kMostNames) names += message(" and {} more", unknown - kMostNames);
   if (unknown > 0)
-    out.push_back(formatted(
+    out.push_back(message(
         "node {}: the manual does not say whether these survive power-off: {}; read them after a restart",
-        node, names));
+        node_name(node), names));
   add_replaced(profile, node, title, wanted, out);
   return out;
 }

@@ -13,8 +13,7 @@ namespace servoctl::settings {
 /// to keep it: what session::is_known_to_keep() does not know of, and what the drive replaces at its start by
 /// a parameter (od::Parameter::mirror) that says otherwise, written now or not. One sentence a reason;
 /// `title` names the file. Empty where the family cannot store at all: that is refused elsewhere.
-std::vector<std::string> doubts_of_keeping(const drive::Profile& profile, std::uint8_t node,
-                                           const std::string& title, const session::Values& present,
-                                           const session::Values& wanted);
+std::vector<Message> doubts_of_keeping(const drive::Profile& profile, std::uint8_t node, const Message& title,
+                                       const session::Values& present, const session::Values& wanted);
 
 }  // namespace servoctl::settings

@@ -216,7 +216,7 @@ Result<void> RestoreTarget::compare_undecided() {
   const auto all = differing.size();
   left_count_ += all;
   differing.resize(std::min(all, kMostListed));
-  Message names = as_it_is(fmt::to_string(fmt::join(differing, ", ")));
+  auto names = message("{}", NameList{differing});
   if (all > kMostListed) names += message(" and {} more", all - kMostListed);
   left_.push_back(drive_error(
       Errc::negative, node_,

@@ -83,7 +83,7 @@ class Restoring {
     left_count_ = target.left_count();
     const auto to_write = target.to_write();
     if (options_.keep)
-      doubts_ = doubts_of_keeping(*desk_->profile, node_, title_.text(), target.present(), target.asked());
+      doubts_ = doubts_of_keeping(*desk_->profile, node_, title_, target.present(), target.asked());
     for (const auto& doubt : doubts_) desk_->notices.push_back(doubt);
     const bool idle = to_write == 0 && !options_.keep && left_.means.empty();
     keeps_address_ = target.keeps_address();
@@ -258,12 +258,12 @@ class Restoring {
   RestoreAttempt attempt_;
   std::optional<BeforeFile> file_;
   std::optional<FileLock> undone_lock_;
-  std::vector<Error> left_over_;     ///< As RestoreTarget::left().
-  std::size_t left_count_ = 0;       ///< Values that differ and are not written.
-  std::vector<std::string> doubts_;  ///< Of keeping.
-  RestoreJournal left_;              ///< Of what was cut off and is gone on with, or undone.
-  bool differs_ = true;              ///< The drive does not hold the values yet.
-  bool keeps_address_ = false;       ///< The backup's would be another.
+  std::vector<Error> left_over_;  ///< As RestoreTarget::left().
+  std::size_t left_count_ = 0;    ///< Values that differ and are not written.
+  std::vector<Message> doubts_;   ///< Of keeping.
+  RestoreJournal left_;           ///< Of what was cut off and is gone on with, or undone.
+  bool differs_ = true;           ///< The drive does not hold the values yet.
+  bool keeps_address_ = false;    ///< The backup's would be another.
   RestoreEnd end_ = RestoreEnd::idle;
   std::vector<ObjectAddress> in_flash_;
 };

@@ -16,7 +16,8 @@ bool is_of_maker(ObjectAddress object) { return object.index >= 0x2000 && object
 
 }  // namespace
 
-Result<Selection> selection_of(const drive::Profile& profile, std::string_view word) {
+Result<Selection> selection_of(const drive::Profile& profile, std::string_view word,
+                               std::vector<std::string> further) {
   if (word.empty()) return Selection{};
   if (word == "communication")
     return Selection{[&profile](ObjectAddress object) {
@@ -34,10 +35,12 @@ Result<Selection> selection_of(const drive::Profile& profile, std::string_view w
   for (const auto& parameter : profile.parameters)
     if (!parameter.group.empty()) groups.insert(parameter.group);
   if (groups.count(std::string(word)) == 0) {
-    std::vector<std::string> parts{"communication", "pdo", "params"};
+    std::vector<std::string> parts{"communication", "pdo"};
+    parts.insert(parts.end(), further.begin(), further.end());
+    parts.emplace_back("params");
     parts.insert(parts.end(), groups.begin(), groups.end());
     return fail(Errc::usage, message("'{}' is not a part of the settings", as_it_is(word)),
-                message("write one of {}", fmt::join(parts, ", ")));
+                message("write one of {}", NameList{parts}));
   }
   return Selection{[&profile, group = std::string(word)](ObjectAddress object) {
     const auto* parameter = profile.parameter(object);

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "base/number.hpp"
+#include "base/utf8.hpp"
 
 namespace servoctl::show {
 namespace {
@@ -36,13 +37,6 @@ std::string_view digits_at(std::string_view text) {
   const bool more = end < text.size() && is_word(text[end]) && text[end] != '-';
   const bool decimal = end + 1 < text.size() && text[end] == '.' && is_digit(text[end + 1]);
   return more || decimal ? std::string_view() : text.substr(0, end);
-}
-
-/// A character of Chinese, and none of its marks.
-bool ends_with_character(std::string_view text) {
-  if (text.size() < 3) return false;
-  const auto first = static_cast<unsigned char>(text[text.size() - 3]);
-  return first >= 0xE4 && first <= 0xE9;
 }
 
 /// What stands before a list of node numbers in sentences, and whether it goes when the first has a name.

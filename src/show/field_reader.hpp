@@ -12,7 +12,7 @@ namespace servoctl::show {
 /// Reads the fields of a record; remembers the first that is missing or of another kind.
 class FieldReader {
  public:
-  FieldReader(const report::Value& record, std::string_view where) : record_(&record), where_(where) {}
+  FieldReader(const report::Value& record, Message where) : record_(&record), where_(std::move(where)) {}
 
   std::string text(std::string_view key, bool required = false) {
     return read<std::string>(key, required).value_or(std::string());
@@ -22,9 +22,9 @@ class FieldReader {
   }
   bool flag(std::string_view key) { return read<bool>(key, true).value_or(false); }
   void refuse(std::string_view key) {
-    if (!error_) error_ = where_ + ": '" + std::string(key) + "' is missing or wrong";
+    if (!error_) error_ = message("{}: '{}' is missing or wrong", where_, as_it_is(key));
   }
-  const std::optional<std::string>& error() const { return error_; }
+  const std::optional<Message>& error() const { return error_; }
 
  private:
   template <class T>
@@ -36,8 +36,8 @@ class FieldReader {
   }
 
   const report::Value* record_;
-  std::string where_;
-  std::optional<std::string> error_;
+  Message where_;
+  std::optional<Message> error_;
 };
 
 }  // namespace servoctl::show

@@ -32,7 +32,7 @@ Result<std::optional<KnownDrive>> KnownDriveFile::read() const {
   if (!text) return fail(text.error());
   const auto document = report::parse_json(*text, path_.string());
   if (!document) return damaged(document.error().message);
-  FieldReader fields(*document, path_.string());
+  FieldReader fields(*document, as_it_is(path_.string()));
   KnownDrive out;
   if (fields.number("servoctl_drive", true).value_or(kVersion) != kVersion) fields.refuse("servoctl_drive");
   if (fields.number("node", true).value_or(node_) != node_) fields.refuse("node");

@@ -70,9 +70,9 @@ std::string event_text(const session::NodeEvent& event, const drive::Profile* pr
   return out;
 }
 
-std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese,
-                        const session::Network* network) {
-  return formatted("node {}: {}", event.node, event_text(event, profile, chinese, network));
+Message notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese,
+                    const session::Network* network) {
+  return message("node {}: {}", node_name(event.node), event_text(event, profile, chinese, network));
 }
 
 }  // namespace servoctl::show

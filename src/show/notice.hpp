@@ -14,7 +14,7 @@ namespace servoctl::show {
 std::string event_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese,
                        const session::Network* network = nullptr);
 /// The same with its node in front: `node 3: boot-up`.
-std::string notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese,
-                        const session::Network* network = nullptr);
+Message notice_text(const session::NodeEvent& event, const drive::Profile* profile, bool chinese,
+                    const session::Network* network = nullptr);
 
 }  // namespace servoctl::show

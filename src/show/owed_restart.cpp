@@ -47,7 +47,7 @@ tl::unexpected<Error> damaged(Message message) {
 }
 
 Result<OwedValue> value_of(const Value& record, const std::string& file) {
-  FieldReader fields(record, file);
+  FieldReader fields(record, as_it_is(file));
   OwedValue out;
   out.object = {static_cast<std::uint16_t>(fields.number("index", true).value_or(0) & 0xFFFFU),
                 static_cast<std::uint8_t>(fields.number("sub", true).value_or(0) & 0xFFU)};
@@ -100,7 +100,7 @@ Result<std::optional<OwedRestart>> OwedRestartFile::read() const {
   if (!text) return fail(text.error());
   const auto document = report::parse_json(*text, file);
   if (!document) return damaged(document.error().message);
-  FieldReader fields(*document, file);
+  FieldReader fields(*document, as_it_is(file));
   if (fields.number("servoctl_restart", true).value_or(kVersion) != kVersion)
     fields.refuse("servoctl_restart");
   if (fields.number("node", true).value_or(node_) != node_) fields.refuse("node");

@@ -62,7 +62,7 @@ Result<bool> plan_fault(const CellSpec& spec, std::string_view text, std::span<D
       return spec.wrong(
           message("'fault={}' is not CODE@TIME or PANEL@TIME; options stand behind all drives: "
                   "sim:gsd600@1,dm@2?fault=0xFF00@2s",
-                  text));
+                  as_it_is(text)));
     drive->raise_fault_at(*alarm, now + *delay);
   }
   return true;
@@ -71,7 +71,7 @@ Result<bool> plan_fault(const CellSpec& spec, std::string_view text, std::span<D
 Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<DriveModel* const> drives) {
   const auto counts = parse_digits(text, 10);
   if (!counts || *counts < 2)
-    return spec.wrong(message("'counts={}': counts per revolution must be 2 or more", text));
+    return spec.wrong(message("'counts={}': counts per revolution must be 2 or more", as_it_is(text)));
   bool taken = false;
   for (auto* drive : drives) {
     if (!drive->has_own_counts()) continue;
@@ -79,7 +79,8 @@ Result<bool> set_counts(const CellSpec& spec, std::string_view text, std::span<D
     taken = true;
   }
   if (taken) return true;
-  return spec.wrong(message("'counts={}': all drives here report their counts per revolution", text));
+  return spec.wrong(
+      message("'counts={}': all drives here report their counts per revolution", as_it_is(text)));
 }
 
 /// `NAME=VALUE` of a parameter of this family.
@@ -102,12 +103,14 @@ Result<bool> set_on_panel(const CellSpec& spec, std::string_view text, std::span
       if (!value) continue;
       known = true;
       if (!drive->set_on_panel(value->first, value->second))
-        return spec.wrong(message("'panel={}': {} cannot be set to {} on the panel of the {}", text,
-                                  value->first, value->second, as_it_is(drive->profile().family)));
+        return spec.wrong(message("'panel={}': {} cannot be set to {} on the panel of the {}", as_it_is(text),
+                                  as_it_is(value->first), as_it_is(value->second),
+                                  as_it_is(drive->profile().family)));
     }
     if (!known)
-      return spec.wrong(message(
-          "'panel={}' is not NAME=VALUE of parameters that a drive here has: sim:sv2@1?panel=PA-20=0", text));
+      return spec.wrong(
+          message("'panel={}' is not NAME=VALUE of parameters that a drive here has: sim:sv2@1?panel=PA-20=0",
+                  as_it_is(text)));
   }
   return true;
 }
@@ -161,7 +164,8 @@ Result<const drive::Profile*> profile_of(std::vector<std::shared_ptr<const drive
 
 Result<Duration> time_of(const CellSpec& spec, const CellSpec::Option& option) {
   auto time = read_duration(option.value);
-  if (!time) return spec.wrong(message("{}: {}; {}", option.key, time.error().message, time.error().hint));
+  if (!time)
+    return spec.wrong(message("{}: {}; {}", as_it_is(option.key), time.error().message, time.error().hint));
   return time;
 }
 
@@ -172,7 +176,7 @@ Result<std::vector<std::string_view>> lies_of(const CellSpec& spec, const CellSp
   for (const auto word : words)
     if (std::find(known.begin(), known.end(), word) == known.end())
       return spec.wrong(
-          message("'lie={}': simulated drives here can lie by {}", option.value, one_of(names)));
+          message("'lie={}': simulated drives here can lie by {}", as_it_is(option.value), one_of(names)));
   return words;
 }
 

@@ -22,7 +22,7 @@ struct Task {
 
   /// `'lose=x': …`.
   tl::unexpected<Error> wrong(const Message& what) const {
-    return spec->wrong(message("'{}={}': {}", option->key, option->value, what));
+    return spec->wrong(message("'{}={}': {}", as_it_is(option->key), as_it_is(option->value), what));
   }
 };
 
@@ -206,7 +206,7 @@ Result<SiiFault> sii_fault_of(const CellSpec& spec) {
     if (found == std::end(kFaults))
       return spec.wrong(
           message("'sii={}': what is wrong with an SII is checksum, blank, cut-short, mailboxes or mute",
-                  option.value));
+                  as_it_is(option.value)));
     out = found->fault;
   }
   return out;

@@ -166,7 +166,7 @@ Error other_drive(const TestResult& test, const Message& what) {
   const auto time = text(find(Value(test.origin), "time"));
   return drive_error(Errc::refused, test.node,
                      message("`test {}`{} was run on another drive: {}", as_it_is(test.test),
-                             time.empty() ? "" : " of " + time, what),
+                             time.empty() ? Message() : message(" of {}", as_it_is(time)), what),
                      "leave this --tests out, or test the present drive");
 }
 

@@ -70,6 +70,12 @@ TEST(MessageTest, NamesWhatStandsAtItsPlaces) {
   EXPECT_FALSE(message("the feeder of node {}", 3).names("feeder"));
 }
 
+/// What a person typed says nothing of what kind of message it is.
+TEST(MessageTest, SaysWhatItsTextsSay) {
+  EXPECT_TRUE(message("{}; {}", 1, Message("--turn gives it")).says("--turn "));
+  EXPECT_FALSE(message("'{}' is not an option", as_it_is("--turn x")).says("--turn "));
+}
+
 TEST(MessageTest, TwoAreOneBehindTheOther) {
   auto both = Message("first");
   both += message("; {}", 2);

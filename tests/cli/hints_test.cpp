@@ -43,7 +43,7 @@ std::vector<Hint> all_hints() {
       if (line.ends_with(" --json")) continue;
       // What `doctor` says that mends a finding is a hint too.
       for (const std::string_view mark : {"  hint: ", "  mend: "})
-        if (const auto at = text.find(mark); at == text.find_first_not_of(' ') - 2)
+        if (const auto at = text.find(mark); at != std::string::npos && at + 2 == text.find_first_not_of(' '))
           out.push_back({name, line, text.substr(at + mark.size())});
     }
   }

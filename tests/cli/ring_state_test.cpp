@@ -162,7 +162,7 @@ TEST_F(RingStateTest, EventsOfSlavesAreToldInTheirWords) {
   pass(milliseconds(500));
   const auto events = session_->take_events();
   ASSERT_FALSE(events.empty());
-  EXPECT_EQ(show::notice_text(events.front(), nullptr, false, &session_->network()),
+  EXPECT_EQ(show::notice_text(events.front(), nullptr, false, &session_->network()).text(),
             "node 1: AL state is now SAFE-OP");
 }
 

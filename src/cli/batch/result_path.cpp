@@ -43,13 +43,13 @@ const Value* field_of(const Record& record, std::string_view name) {
 Result<Part> take_field(const Part& from, const std::string& name) {
   const auto* record = std::get_if<Record>(&from.value.data());
   const auto said = from.where == "." ? std::string("the result") : from.where;
-  if (record == nullptr) return fail(Errc::negative, message("{} has no field {}", said, name));
+  if (record == nullptr) return fail(Errc::negative, message("{} has no field {}", said, as_it_is(name)));
   if (const auto* value = field_of(*record, name))
     return Part{(from.where == "." ? "" : from.where) + "." + name, opened(*value)};
   std::vector<std::string> names;
   for (const auto& field : *record)
     if (field.show != Show::text) names.push_back(field.key);
-  return fail(Errc::negative, message("{} has no field {}", said, name), "it has " + one_of(names));
+  return fail(Errc::negative, message("{} has no field {}", said, as_it_is(name)), "it has " + one_of(names));
 }
 
 std::string element_path(const std::string& list, std::size_t i) {

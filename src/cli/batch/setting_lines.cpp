@@ -55,7 +55,7 @@ Result<std::vector<settings::SettingLine>> setting_lines(Shell& shell, std::stri
     if (is_choice(step.words)) continue;
     auto line = line_of(chosen_now, step.words);
     const bool foreign = out.empty() && match_command(step.words).command == nullptr;
-    if (!line && foreign && !line.error().hint.text().starts_with("did you mean"))
+    if (!line && foreign && !line.error().hint.says("did you mean"))
       return fail(
           Errc::file,
           message("{} is neither a backup, a DCF, a table nor a list of command lines", as_it_is(file)),

@@ -29,7 +29,7 @@ Result<Assignment> parse_assignment(std::string_view text) {
     return fail(Errc::usage, message("'{}' is not NAME=VALUE", as_it_is(text)),
                 "a name has letters, digits and _; put a value with blanks in quotes: NAME=\"two words\"");
   if (text.size() - equals > kLongestValue)
-    return fail(Errc::usage, message("the value of {} is too long", text.substr(0, equals)));
+    return fail(Errc::usage, message("the value of {} is too long", as_it_is(text.substr(0, equals))));
   return Assignment{std::string(text.substr(0, equals)), std::string(text.substr(equals + 1))};
 }
 
@@ -122,7 +122,7 @@ Result<std::string> Variables::value(std::string_view name) const {
   for (const auto& entry : values_) known.push_back(entry.first);
   Message hint = did_you_mean(name, known);
   if (hint.empty()) hint = message("`set {0}=VALUE`, or --var {0}=VALUE on the command line", as_it_is(name));
-  return fail(Errc::usage, message("unknown variable ${{{}}}", name), std::move(hint));
+  return fail(Errc::usage, message("unknown variable ${{{}}}", as_it_is(name)), std::move(hint));
 }
 
 Result<std::vector<LoopItem>> loop_items(std::span<const std::string> words,

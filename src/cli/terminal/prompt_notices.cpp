@@ -26,8 +26,8 @@ void PromptNotices::hear(Shell& shell) {
 
 std::vector<Message> PromptNotices::give() {
   if (left_out_ > 0)
-    waiting_.push_back(formatted("{} messages were not shown: the output was not read in time",
-                                 std::exchange(left_out_, 0)));
+    waiting_.push_back(
+        message("{} messages were not shown: the output was not read in time", std::exchange(left_out_, 0)));
   return std::exchange(waiting_, {});
 }
 

@@ -194,10 +194,10 @@ Result<void> check_restricted(const command::PromptWord& word, const std::string
 Result<void> check_family_of_axis(Shell& shell, const Settings& settings) {
   const auto family = family_in_cabinet(settings, shell);
   if (family.empty() || family == settings.drive) return {};
-  return fail(
-      Errc::usage,
-      message("{} is {} by the cabinet file, not {}", settings.nodes, as_it_is(family), settings.drive),
-      "`use` chooses other nodes; or change `family` in the file");
+  return fail(Errc::usage,
+              message("{} is {} by the cabinet file, not {}", as_it_is(settings.nodes), as_it_is(family),
+                      as_it_is(settings.drive)),
+              "`use` chooses other nodes; or change `family` in the file");
 }
 
 /// A word that contradicts an earlier one ends what that chose.
